@@ -1,0 +1,461 @@
+/*
+  rigid.c - life cycle, options, state access and sums of the rigid bodies; no dynamics (rigidstep.c), no shapes (rigidshape.c).
+
+  Every rank of the communicator holds every body and must make the same calls: the bodies are replicated, not distributed.
+*/
+#include "rigidimpl.h"
+
+PetscLogEvent RIGID_Advance, RIGID_Fill;
+
+PetscErrorCode RigidRegisterEvents(void)
+{
+  static PetscBool registered = PETSC_FALSE;
+  PetscClassId id;
+
+  PetscFunctionBegin;
+  if (registered) PetscFunctionReturn(PETSC_SUCCESS);
+  registered = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Rigid bodies", &id));
+  PetscCall(PetscLogEventRegister("RigidAdvance", id, &RIGID_Advance));
+  PetscCall(PetscLogEventRegister("RigidFill", id, &RIGID_Fill));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Collective. The object holds no bodies, no gravity, dim = 3, t = 0. */
+PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid)
+{
+  PetscFunctionBegin;
+  PetscCall(RigidRegisterEvents());
+  PetscCall(PetscNew(rigid));
+  (*rigid)->comm = comm;
+  (*rigid)->dim = 3;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options are then -<prefix>rigid_gravity and so on. */
+PetscErrorCode RigidSetOptionsPrefix(Rigid rigid, const char prefix[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(rigid->prefix));
+  PetscCall(PetscStrallocpy(prefix, &rigid->prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetDimension(Rigid rigid, PetscInt dim)
+{
+  PetscFunctionBegin;
+  PetscCheck(dim == 2 || dim == 3, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE, "-rigid_dimension %" PetscInt_FMT ": must be 2 or 3",
+             dim);
+  PetscCheck(rigid->n == 0 || dim == rigid->dim, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetDimension() before RigidAddBody()");
+  rigid->dim = dim;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A free sphere of water's density at rest in the origin, without a radius; mass and inertia from the shape; no locks. */
+PetscErrorCode RigidBodySpecInit(RigidBodySpec *spec)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(spec, sizeof(*spec)));
+  spec->shape = RIGID_SPHERE;
+  spec->motion = RIGID_FREE;
+  spec->density = 1000.;
+  spec->axisangle[2] = 1.;
+  spec->mass = PETSC_DECIDE;
+  for (int k = 0; k < 3; k++) spec->inertia[k] = PETSC_DECIDE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Checks every field of spec; errors name the body, the field, its value and the rule. body may be NULL. */
+PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec, PetscInt *body)
+{
+  RigidBody *b;
+
+  PetscFunctionBegin;
+  PetscCheck(!rigid->setup, rigid->comm, PETSC_ERR_ORDER, "RigidAddBody() must come before RigidSetUp()");
+  PetscCall(RigidSpecCheck(rigid->comm, rigid->n, rigid->dim, spec));
+  if (rigid->n == rigid->nalloc) {
+    RigidBody *more;
+    rigid->nalloc = 2 * rigid->nalloc + 8;
+    PetscCall(PetscCalloc1(rigid->nalloc, &more));
+    if (rigid->n) PetscCall(PetscArraycpy(more, rigid->body, rigid->n));
+    PetscCall(PetscFree(rigid->body));
+    rigid->body = more;
+  }
+  b = &rigid->body[rigid->n];
+  b->spec = *spec;
+  for (PetscInt k = RigidShapeNumSizes(spec->shape, rigid->dim); k < 3; k++) b->spec.size[k] = 0.;
+  if (rigid->dim == 2) b->spec.lock[2] = b->spec.lock[3] = b->spec.lock[4] = PETSC_TRUE;
+  b->volume = RigidShapeVolume(&b->spec, rigid->dim);
+  if (body) *body = rigid->n;
+  rigid->n++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* g in m/s^2 (space frame). */
+PetscErrorCode RigidSetGravity(Rigid rigid, const PetscReal g[3])
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCheck(!PetscIsInfOrNanReal(g[k]), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "-rigid_gravity: component %d = %g is not a finite number", k, (double)g[k]);
+    rigid->g[k] = g[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* rho > 0 (kg/m^3): bodies weigh (m - rho V) g, for fluids whose own hydrostatic pressure is left out; 0 (default): m g. */
+PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho)
+{
+  PetscFunctionBegin;
+  PetscCheck(rho >= 0. && !PetscIsInfOrNanReal(rho), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_fluid_density %g kg/m^3: must be >= 0", (double)rho);
+  rigid->rhofluid = rho;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetFromOptions(Rigid rigid)
+{
+  PetscReal g[3] = {rigid->g[0], rigid->g[1], rigid->g[2]}, rho = rigid->rhofluid;
+  PetscInt n = 3, dim = rigid->dim;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(rigid->comm, rigid->prefix, "Rigid bodies", "Rigid");
+  PetscCall(PetscOptionsInt("-rigid_dimension", "2: unit depth and planar motion; 3", "RigidSetDimension", dim, &dim, NULL));
+  PetscCall(RigidSetDimension(rigid, dim));
+  PetscCall(PetscOptionsRealArray("-rigid_gravity", "Gravity gx,gy,gz, m/s^2", "RigidSetGravity", g, &n, &set));
+  PetscCheck(!set || n == 3, rigid->comm, PETSC_ERR_ARG_SIZ, "-rigid_gravity: needs 3 numbers gx,gy,gz, got %" PetscInt_FMT, n);
+  PetscCall(RigidSetGravity(rigid, g));
+  PetscCall(PetscOptionsReal("-rigid_fluid_density",
+                             "Density of displaced fluid that reduces the weight, kg/m^3 (0: full weight)",
+                             "RigidSetFluidDensity", rho, &rho, NULL));
+  PetscCall(RigidSetFluidDensity(rigid, rho));
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BodySetUp(Rigid rigid, PetscInt i)
+{
+  RigidBody *b = &rigid->body[i];
+  RigidBodySpec *s = &b->spec;
+  PetscReal J[3], v[3];
+  const PetscReal norm = Vec3Norm(s->axisangle);
+
+  PetscFunctionBegin;
+  if (s->mass == (PetscReal)PETSC_DECIDE) s->mass = s->density * b->volume;
+  RigidShapeMoments(s, rigid->dim, J);
+  for (int k = 0; k < 3; k++) {
+    if (s->inertia[k] == (PetscReal)PETSC_DECIDE) s->inertia[k] = J[k] * s->mass / b->volume;
+    b->X[k] = s->position[k];
+    b->V[k] = s->motion == RIGID_FIXED ? 0. : s->velocity[k];
+    v[k] = s->axisangle[k] / norm * s->axisangle[3];
+  }
+  for (int k = 0; k < 3 && rigid->dim == 3; k++) {
+    PetscCheck(s->inertia[k] <= (s->inertia[(k + 1) % 3] + s->inertia[(k + 2) % 3]) * (1. + 1.e-9), rigid->comm,
+               PETSC_ERR_ARG_OUTOFRANGE,
+               "Rigid body %" PetscInt_FMT
+               ": inertia = (%g, %g, %g) kg m^2; no principal moment may exceed the sum of the other two",
+               i, (double)s->inertia[0], (double)s->inertia[1], (double)s->inertia[2]);
+  }
+  QuatExp(v, b->q);
+  QuatNormalize(b->q);
+  RigidBodySetOmega(b, s->omega);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mass properties and initial state; after it the state functions may be called and bodies no longer added. */
+PetscErrorCode RigidSetUp(Rigid rigid)
+{
+  PetscFunctionBegin;
+  if (rigid->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < rigid->n; i++) PetscCall(BodySetUp(rigid, i));
+  rigid->setup = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BodyView(Rigid rigid, PetscInt i, PetscViewer viewer)
+{
+  static const char *const motion[] = {"fixed", "prescribed", "free"};
+  const RigidBody *b = &rigid->body[i];
+  const RigidBodySpec *s = &b->spec;
+  char lock[7];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 6; k++) lock[k] = s->lock[k] ? '1' : '0';
+  lock[6] = 0;
+  PetscCall(
+      PetscViewerASCIIPrintf(viewer, "body %" PetscInt_FMT ": %s, %s, size", i, RigidShapeName(s->shape), motion[s->motion]));
+  PetscCall(PetscViewerASCIIUseTabs(viewer, PETSC_FALSE));
+  for (PetscInt k = 0; k < RigidShapeNumSizes(s->shape, rigid->dim); k++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)s->size[k]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, " m, density %g kg/m^3, locks %s\n", (double)s->density, lock));
+  PetscCall(PetscViewerASCIIUseTabs(viewer, PETSC_TRUE));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  if (rigid->setup) {
+    PetscReal w[3];
+    RigidBodyOmega(b, b->q, w);
+    PetscCall(PetscViewerASCIIPrintf(viewer, "mass %g kg, principal moments %g %g %g kg m^2\n", (double)s->mass,
+                                     (double)s->inertia[0], (double)s->inertia[1], (double)s->inertia[2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "position %g %g %g m, quaternion %g %g %g %g\n", (double)b->X[0], (double)b->X[1],
+                                     (double)b->X[2], (double)b->q[0], (double)b->q[1], (double)b->q[2], (double)b->q[3]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "velocity %g %g %g m/s, angular velocity %g %g %g rad/s\n", (double)b->V[0],
+                                     (double)b->V[1], (double)b->V[2], (double)w[0], (double)w[1], (double)w[2]));
+  }
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidView(Rigid rigid, PetscViewer viewer)
+{
+  PetscBool ascii;
+
+  PetscFunctionBegin;
+  if (!viewer) viewer = PETSC_VIEWER_STDOUT_(rigid->comm);
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "Rigid bodies: %" PetscInt_FMT ", dimension %" PetscInt_FMT ", t = %g s\n", rigid->n,
+                                   rigid->dim, (double)rigid->t));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "gravity %g %g %g m/s^2, fluid density %g kg/m^3%s\n", (double)rigid->g[0],
+                                   (double)rigid->g[1], (double)rigid->g[2], (double)rigid->rhofluid,
+                                   rigid->rhofluid > 0. ? "" : " (full weight)"));
+  for (PetscInt i = 0; i < rigid->n; i++) PetscCall(BodyView(rigid, i, viewer));
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidDestroy(Rigid *rigid)
+{
+  PetscFunctionBegin;
+  if (!*rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*rigid)->prefix));
+  PetscCall(PetscFree((*rigid)->body));
+  PetscCall(PetscFree(*rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RigidCheckBody(Rigid rigid, PetscInt body, PetscBool setup)
+{
+  PetscFunctionBegin;
+  PetscCheck(body >= 0 && body < rigid->n, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT ": there are %" PetscInt_FMT " bodies", body, rigid->n);
+  PetscCheck(rigid->setup || !setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetNumBodies(Rigid rigid, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = rigid->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The fields as given to RigidAddBody(); mass and inertia as used once RigidSetUp() was called. */
+PetscErrorCode RigidGetBody(Rigid rigid, PetscInt body, RigidBodySpec *spec)
+{
+  PetscFunctionBegin;
+  PetscCall(RigidCheckBody(rigid, body, PETSC_FALSE));
+  *spec = rigid->body[body].spec;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetState(Rigid rigid, PetscInt body, PetscReal X[3], PetscReal q[4], PetscReal V[3], PetscReal omega[3])
+{
+  const RigidBody *b;
+
+  PetscFunctionBegin;
+  PetscCall(RigidCheckBody(rigid, body, PETSC_TRUE));
+  b = &rigid->body[body];
+  if (X) PetscCall(PetscArraycpy(X, b->X, 3));
+  if (q) PetscCall(PetscArraycpy(q, b->q, 4));
+  if (V) PetscCall(PetscArraycpy(V, b->V, 3));
+  if (omega) RigidBodyOmega(b, b->q, omega);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NULL leaves a part as it is (for omega: keeps the angular velocity). Locked directions of V and omega are set to 0. */
+PetscErrorCode RigidSetState(Rigid rigid, PetscInt body, const PetscReal X[3], const PetscReal q[4], const PetscReal V[3],
+                             const PetscReal omega[3])
+{
+  RigidBody *b;
+  PetscReal w[3];
+
+  PetscFunctionBegin;
+  PetscCall(RigidCheckBody(rigid, body, PETSC_TRUE));
+  b = &rigid->body[body];
+  RigidBodyOmega(b, b->q, w);
+  if (q) {
+    const PetscReal norm = PetscSqrtReal(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    PetscCheck(norm > 0. && !PetscIsInfOrNanReal(norm), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "Rigid body %" PetscInt_FMT ": quaternion of length %g; must be > 0", body, (double)norm);
+    for (int k = 0; k < 4; k++) b->q[k] = q[k];
+    QuatNormalize(b->q);
+  }
+  for (int k = 0; k < 3; k++) {
+    const PetscBool fixed = b->spec.motion == RIGID_FIXED ? PETSC_TRUE : PETSC_FALSE,
+                    lk = b->spec.motion == RIGID_FREE ? b->spec.lock[k] : PETSC_FALSE;
+    const PetscBool lr = b->spec.motion == RIGID_FREE ? b->spec.lock[3 + k] : PETSC_FALSE;
+    if (X) b->X[k] = X[k];
+    if (V) b->V[k] = (fixed || lk) ? 0. : V[k];
+    if (omega) w[k] = omega[k];
+    if (fixed || lr) w[k] = 0.;
+    PetscCheck(!PetscIsInfOrNanReal(b->X[k]) && !PetscIsInfOrNanReal(b->V[k]) && !PetscIsInfOrNanReal(w[k]), rigid->comm,
+               PETSC_ERR_FP, "Rigid body %" PetscInt_FMT ": component %d of the state is not finite", body, k);
+  }
+  RigidBodySetOmega(b, w);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t)
+{
+  PetscFunctionBegin;
+  rigid->t = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t)
+{
+  PetscFunctionBegin;
+  *t = rigid->t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One body's part of state[], in this order. */
+static void BodyPointers(RigidBody *b, PetscReal *p[], int n[])
+{
+  p[0] = b->X, p[1] = b->q, p[2] = b->V, p[3] = b->L, p[4] = b->w, p[5] = b->Fused, p[6] = b->Tused, p[7] = b->F, p[8] = b->T;
+  for (int k = 0; k < 9; k++) n[k] = k == 1 ? 4 : 3;
+}
+
+/* state: bodies x RIGID_PACK_SIZE; the time is not in it, see RigidGetTime(). */
+PetscErrorCode RigidPack(Rigid rigid, PetscReal state[])
+{
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    PetscReal *p[9];
+    int n[9];
+    BodyPointers(&rigid->body[i], p, n);
+    for (int k = 0; k < 9; k++)
+      for (int c = 0; c < n[k]; c++) *state++ = p[k][c];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[])
+{
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    PetscReal *p[9];
+    int n[9];
+    BodyPointers(&rigid->body[i], p, n);
+    for (int k = 0; k < 9; k++)
+      for (int c = 0; c < n[k]; c++) p[k][c] = *state++;
+  }
+  rigid->advanced = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From the wrench of the last RigidAdvance(); before the first one, from the loads collected so far. Gravity included. */
+PetscErrorCode RigidGetAcceleration(Rigid rigid, PetscInt body, PetscReal A[3], PetscReal alpha[3])
+{
+  PetscReal a[3], al[3];
+
+  PetscFunctionBegin;
+  PetscCall(RigidCheckBody(rigid, body, PETSC_TRUE));
+  RigidBodyAcceleration(rigid, &rigid->body[body], a, al);
+  if (A) PetscCall(PetscArraycpy(A, a, 3));
+  if (alpha) PetscCall(PetscArraycpy(alpha, al, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void RigidRotationMatrix(const PetscReal q[4], PetscReal R[9])
+{
+  QuatMatrix(q, R);
+}
+
+PetscErrorCode RigidZeroLoads(Rigid rigid)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    PetscCall(PetscArrayzero(rigid->body[i].F, 3));
+    PetscCall(PetscArrayzero(rigid->body[i].T, 3));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F in N, T about the centre of mass in N m; NULL for none. Fixed and prescribed bodies take loads and ignore them. */
+PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const PetscReal F[3], const PetscReal T[3])
+{
+  PetscFunctionBegin;
+  PetscCall(RigidCheckBody(rigid, body, PETSC_FALSE));
+  for (int k = 0; k < 3; k++) {
+    if (F) rigid->body[body].F[k] += F[k];
+    if (T) rigid->body[body].T[k] += T[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One step of the integrator from the present time to t (s), see rigidstep.c; t must not lie in the past. */
+PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
+{
+  const PetscReal dt = t - rigid->t;
+
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  PetscCheck(dt >= 0. && !PetscIsInfOrNanReal(t), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "RigidAdvance() to t = %g s: must be >= the present time %g s", (double)t, (double)rigid->t);
+  PetscCall(PetscLogEventBegin(RIGID_Advance, 0, 0, 0, 0));
+  for (PetscInt i = 0; i < rigid->n; i++) PetscCall(RigidBodyAdvance(rigid, i, dt));
+  rigid->t = t;
+  rigid->advanced = PETSC_TRUE;
+  PetscCall(PetscLogEventEnd(RIGID_Advance, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* J. Kinetic energy of free and prescribed bodies; potential -(m - rho V) g.X of the free ones. Each may be NULL. */
+PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, PetscReal *potential)
+{
+  PetscReal ke = 0., pe = 0.;
+
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    const RigidBody *b = &rigid->body[i];
+    PetscReal w[3], wb[3], F[3];
+    RigidBodyOmega(b, b->q, w);
+    QuatRotateBack(b->q, w, wb);
+    ke += .5 * b->spec.mass * Vec3Dot(b->V, b->V);
+    for (int k = 0; k < 3; k++) ke += .5 * b->spec.inertia[k] * wb[k] * wb[k];
+    RigidBodyWeight(rigid, b, F);
+    if (b->spec.motion == RIGID_FREE) pe -= Vec3Dot(F, b->X);
+  }
+  if (kinetic) *kinetic = ke;
+  if (potential) *potential = pe;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sum over the free and prescribed bodies of m V (kg m/s) and, about the origin, m X x V + J w (kg m^2/s). Each may be NULL. */
+PetscErrorCode RigidGetMomentum(Rigid rigid, PetscReal p[3], PetscReal L[3])
+{
+  PetscReal ps[3] = {0., 0., 0.}, Ls[3] = {0., 0., 0.};
+
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    const RigidBody *b = &rigid->body[i];
+    PetscReal w[3], Jw[3], XV[3], A[9];
+    RigidBodyOmega(b, b->q, w);
+    InertiaSpace(b->q, b->spec.inertia, A);
+    Mat3Mult(A, w, Jw);
+    Vec3Cross(b->X, b->V, XV);
+    for (int k = 0; k < 3; k++) {
+      ps[k] += b->spec.mass * b->V[k];
+      Ls[k] += b->spec.mass * XV[k] + Jw[k];
+    }
+  }
+  if (p) PetscCall(PetscArraycpy(p, ps, 3));
+  if (L) PetscCall(PetscArraycpy(L, Ls, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

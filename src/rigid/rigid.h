@@ -1,0 +1,89 @@
+/*
+  rigid.h - public interface of the rigid bodies of Frond.
+
+  Newton-Euler with unit quaternions (Pazouki, Serban, Negrut, Eqs. 12-17). Quaternions are q = (qx, qy, qz, qw) in the
+  paper's order, Eq. 17: the FIRST entry is the scalar part of the paper's G; see docs/theory.md. Angular velocity
+  is given in the body frame (omega', rad/s) unless a name says otherwise.
+*/
+#ifndef RIGID_H
+#define RIGID_H
+
+#include "frondsys.h"
+#include <petscviewer.h>
+
+typedef struct _p_Rigid *Rigid;
+
+typedef enum { RIGID_SPHERE, RIGID_BOX, RIGID_CYLINDER, RIGID_ELLIPSOID, RIGID_CAPSULE } RigidShape;
+/* Fixed: never moves. Prescribed: velocity and angular velocity (space frame) constant. Free: Newton-Euler. */
+typedef enum { RIGID_FIXED, RIGID_PRESCRIBED, RIGID_FREE } RigidMotion;
+
+typedef struct {
+  RigidShape shape;
+  RigidMotion motion;
+  /*
+    m. sphere: radius; box: three edge lengths; cylinder, capsule (axis = body z): radius, length (of the cylindrical
+    part for a capsule, whose caps come on top); ellipsoid: semi-axes. In 2D the extent along z is ignored and set to
+    0, which RigidShapeDistance() takes as endless.
+  */
+  PetscReal size[3];
+  PetscReal density;      /* kg/m^3 */
+  PetscReal position[3];  /* centre of mass, m */
+  PetscReal axisangle[4]; /* initial orientation: axis (any length > 0) and angle, rad */
+  PetscReal velocity[3];  /* m/s */
+  PetscReal omega[3];     /* space frame, rad/s */
+  PetscReal mass;         /* kg; PETSC_DECIDE: from density and shape */
+  PetscReal inertia[3];   /* principal moments, kg m^2; PETSC_DECIDE each: from mass and shape, homogeneous */
+  PetscBool lock[6];      /* free bodies: no velocity along x, y, z, no angular velocity about x, y, z (space frame) */
+} RigidBodySpec;
+
+FROND_EXTERN PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid);
+FROND_EXTERN PetscErrorCode RigidSetOptionsPrefix(Rigid rigid, const char prefix[]);
+/* dim = 2: unit depth, planar motion, shapes cut at z = 0; call it before RigidAddBody(). */
+FROND_EXTERN PetscErrorCode RigidSetDimension(Rigid rigid, PetscInt dim);
+FROND_EXTERN PetscErrorCode RigidBodySpecInit(RigidBodySpec *spec);
+FROND_EXTERN PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec, PetscInt *body);
+FROND_EXTERN PetscErrorCode RigidSetGravity(Rigid rigid, const PetscReal g[3]);
+FROND_EXTERN PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho);
+FROND_EXTERN PetscErrorCode RigidSetFromOptions(Rigid rigid);
+FROND_EXTERN PetscErrorCode RigidSetUp(Rigid rigid);
+FROND_EXTERN PetscErrorCode RigidView(Rigid rigid, PetscViewer viewer);
+FROND_EXTERN PetscErrorCode RigidDestroy(Rigid *rigid);
+
+FROND_EXTERN PetscErrorCode RigidGetNumBodies(Rigid rigid, PetscInt *n);
+FROND_EXTERN PetscErrorCode RigidGetBody(Rigid rigid, PetscInt body, RigidBodySpec *spec);
+/* X (m), q (-), V (m/s), omega in the space frame (rad/s); each may be NULL. */
+FROND_EXTERN PetscErrorCode RigidGetState(Rigid rigid, PetscInt body, PetscReal X[3], PetscReal q[4], PetscReal V[3],
+                                          PetscReal omega[3]);
+FROND_EXTERN PetscErrorCode RigidSetState(Rigid rigid, PetscInt body, const PetscReal X[3], const PetscReal q[4],
+                                          const PetscReal V[3], const PetscReal omega[3]);
+/* Time of the state, s (0 at the start). */
+FROND_EXTERN PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t);
+FROND_EXTERN PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t);
+/* The integrator's own variables, RIGID_PACK_SIZE reals a body, for restarts that go on bit for bit. */
+#define RIGID_PACK_SIZE 28
+FROND_EXTERN PetscErrorCode RigidPack(Rigid rigid, PetscReal state[]);
+FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
+/* Linear and angular acceleration (space frame) from the last applied wrench, m/s^2, rad/s^2. */
+FROND_EXTERN PetscErrorCode RigidGetAcceleration(Rigid rigid, PetscInt body, PetscReal A[3], PetscReal alpha[3]);
+/* Rotation matrix, row major, space = R body. */
+FROND_EXTERN void RigidRotationMatrix(const PetscReal q[4], PetscReal R[9]);
+
+/* Wrench: force (N) and torque about the centre of mass (N m), space frame, held over the next RigidAdvance(). */
+FROND_EXTERN PetscErrorCode RigidZeroLoads(Rigid rigid);
+FROND_EXTERN PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const PetscReal F[3], const PetscReal T[3]);
+FROND_EXTERN PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t);
+FROND_EXTERN PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, PetscReal *potential);
+FROND_EXTERN PetscErrorCode RigidGetMomentum(Rigid rigid, PetscReal p[3], PetscReal L[3]);
+
+/* Signed distance (m) from a point in the body frame to the surface, negative inside; exact for every shape. */
+FROND_EXTERN PetscReal RigidShapeDistance(const RigidBodySpec *spec, const PetscReal xbody[3]);
+
+/*
+  Fill a body with BCE markers to a depth below its surface (Sect. 2.4, Fig. 2a), nearly dp apart: layers at depth
+  dp/2, 3dp/2, ... ; outputs, allocated with PetscMalloc and owned by the caller: body-frame positions n x 3 (m), the volume that
+  each stands for (m^3; area in 2D) and its depth below the surface (m). Volumes add up to the volume of the filled layers.
+*/
+FROND_EXTERN PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscReal dp, PetscReal depthmax,
+                                             PetscInt *n, PetscReal **x, PetscReal **volume, PetscReal **depth);
+
+#endif

@@ -1,0 +1,211 @@
+/*
+  rigidstep.c - motion of one rigid body over one time step, Eqs. 12-16 of Pazouki, Serban, Negrut.
+
+  Kick - free flight - kick (Strang splitting), with the wrench (F, T), space frame, held over the step dt:
+    V += F/M dt/2,  L += T dt/2;   X += V dt, free rotation of q over dt;   V += F/M dt/2,  L += T dt/2
+  where L is the angular momentum about the centre of mass in the space frame. Constant force: exact (a parabola).
+
+  Free rotation, q -> q exp(dt w/2), is a Lie midpoint rule: with m = R(q)^T L the momentum in the body frame,
+    w = J^-1 (m0 + m1)/2,   m1 = R(q exp(dt w/2))^T L = exp(-dt w) m0.
+  It is symmetric, of second order, and keeps the invariants of the free body to round-off: L is not touched; m1 - m0 is
+  normal to w and to m0 + m1, since it comes from a rotation about w, hence 2T = m.J^-1 m is kept; |q| = 1 (Eq. 16).
+  A body spinning about a principal axis is moved exactly. See Simo and Wong, Int. J. Numer. Meth. Eng. 31 (1991), and
+  Austin, Krishnaprasad and Wang, J. Comput. Phys. 107 (1993), for the family of such rules.
+
+  Locked directions are ideal constraints in the space frame: the free components of L obey dL_f/dt = T_f and
+  w_f = (J_ff)^-1 L_f with J_ff the free block of R J R^T, so that no multiplier has to be solved for.
+*/
+#include "rigidimpl.h"
+
+#define RIGID_MAX_SUBSTEPS 100000
+
+static PetscInt NumRotationLocks(const RigidBody *b)
+{
+  return (b->spec.lock[3] ? 1 : 0) + (b->spec.lock[4] ? 1 : 0) + (b->spec.lock[5] ? 1 : 0);
+}
+
+/* Solve J_ff x_f = y_f, x_l = 0, for the space-frame inertia at q. */
+static void SolveUnlocked(const RigidBody *b, const PetscReal q[4], const PetscReal y[3], PetscReal x[3])
+{
+  PetscReal A[9], rhs[3];
+  InertiaSpace(q, b->spec.inertia, A);
+  for (int i = 0; i < 3; i++) {
+    rhs[i] = b->spec.lock[3 + i] ? 0. : y[i];
+    if (!b->spec.lock[3 + i]) continue;
+    for (int j = 0; j < 3; j++) A[3 * i + j] = A[3 * j + i] = 0.;
+    A[4 * i] = 1.;
+  }
+  Mat3Solve(A, rhs, x);
+}
+
+/* Angular velocity (space frame) of body b, were its orientation q. */
+void RigidBodyOmega(const RigidBody *b, const PetscReal q[4], PetscReal w[3])
+{
+  if (b->spec.motion != RIGID_FREE) {
+    for (int k = 0; k < 3; k++) w[k] = b->spec.motion == RIGID_PRESCRIBED ? b->w[k] : 0.;
+  } else if (NumRotationLocks(b)) {
+    SolveUnlocked(b, q, b->L, w);
+  } else {
+    PetscReal m[3];
+    QuatRotateBack(q, b->L, m);
+    for (int k = 0; k < 3; k++) m[k] /= b->spec.inertia[k];
+    QuatRotate(q, m, w);
+  }
+}
+
+/* L = R J R^T w; a locked body has w = 0 along its locks. */
+void RigidBodySetOmega(RigidBody *b, const PetscReal w[3])
+{
+  PetscReal A[9];
+  InertiaSpace(b->q, b->spec.inertia, A);
+  Mat3Mult(A, w, b->L);
+  for (int k = 0; k < 3; k++) b->w[k] = w[k];
+}
+
+/* Gravity less the weight of the displaced fluid. */
+void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3])
+{
+  const PetscReal m = b->spec.mass - rigid->rhofluid * b->volume;
+  for (int k = 0; k < 3; k++) F[k] = m * rigid->g[k];
+}
+
+/* Eqs. 12, 14 for the last wrench: J alpha = T - w x J w in the space frame. */
+void RigidBodyAcceleration(Rigid rigid, const RigidBody *b, PetscReal A[3], PetscReal alpha[3])
+{
+  PetscReal w[3], Jw[3], gyro[3], weight[3], S[9], rhs[3];
+  for (int k = 0; k < 3; k++) A[k] = alpha[k] = 0.;
+  if (b->spec.motion != RIGID_FREE) return;
+  RigidBodyWeight(rigid, b, weight);
+  RigidBodyOmega(b, b->q, w);
+  InertiaSpace(b->q, b->spec.inertia, S);
+  Mat3Mult(S, w, Jw);
+  Vec3Cross(w, Jw, gyro);
+  for (int k = 0; k < 3; k++) {
+    const PetscReal F = rigid->advanced ? b->Fused[k] : b->F[k], T = rigid->advanced ? b->Tused[k] : b->T[k];
+    A[k] = b->spec.lock[k] ? 0. : (F + weight[k]) / b->spec.mass;
+    rhs[k] = T - gyro[k];
+  }
+  SolveUnlocked(b, b->q, rhs, alpha);
+}
+
+/* One free rotation without locks; the iteration contracts by dt |L|/(2 min J) <= 1/4 (see NumSubsteps()). */
+static void RotateFree(RigidBody *b, PetscReal dt)
+{
+  const PetscReal *J = b->spec.inertia;
+  PetscReal m0[3], m1[3], v[3], e[4], qn[4], last = PETSC_MAX_REAL;
+  QuatRotateBack(b->q, b->L, m0);
+  for (int k = 0; k < 3; k++) m1[k] = m0[k];
+  for (int it = 0; it < 60; it++) {
+    PetscReal m[3], change = 0.;
+    for (int k = 0; k < 3; k++) v[k] = .5 * dt * (m0[k] + m1[k]) / J[k];
+    QuatExp(v, e);
+    QuatRotateBack(e, m0, m);
+    for (int k = 0; k < 3; k++) {
+      change = PetscMax(change, PetscAbsReal(m[k] - m1[k]));
+      m1[k] = m[k];
+    }
+    if (change == 0. || (change >= last && it > 3)) break;
+    last = change;
+  }
+  QuatMult(b->q, e, qn);
+  QuatNormalize(qn);
+  for (int k = 0; k < 4; k++) b->q[k] = qn[k];
+}
+
+/* The same midpoint rule in the space frame, w taken at the orientation half way, for bodies with locked rotations. */
+static void RotateLocked(RigidBody *b, PetscReal dt)
+{
+  PetscReal w[3], v[3], e[4], qn[4], last = PETSC_MAX_REAL;
+  RigidBodyOmega(b, b->q, w);
+  for (int it = 0; it < 60; it++) {
+    PetscReal wn[3], change = 0.;
+    for (int k = 0; k < 3; k++) v[k] = .5 * dt * w[k];
+    QuatExp(v, e);
+    QuatMult(e, b->q, qn);
+    RigidBodyOmega(b, qn, wn);
+    for (int k = 0; k < 3; k++) {
+      change = PetscMax(change, PetscAbsReal(wn[k] - w[k]));
+      w[k] = wn[k];
+    }
+    if (change == 0. || (change >= last && it > 3)) break;
+    last = change;
+  }
+  for (int k = 0; k < 3; k++) v[k] = dt * w[k];
+  QuatExp(v, e);
+  QuatMult(e, b->q, qn);
+  QuatNormalize(qn);
+  for (int k = 0; k < 4; k++) b->q[k] = qn[k];
+}
+
+/* Enough substeps for the fixed-point iterations to contract by 4 at least. */
+static PetscErrorCode NumSubsteps(Rigid rigid, PetscInt i, PetscReal dt, PetscInt *nsub)
+{
+  const RigidBody *b = &rigid->body[i];
+  const PetscReal Jmin = PetscMin(PetscMin(b->spec.inertia[0], b->spec.inertia[1]), b->spec.inertia[2]);
+  const PetscReal n = PetscCeilReal(2. * dt * Vec3Norm(b->L) / Jmin);
+
+  PetscFunctionBegin;
+  PetscCheck(n <= RIGID_MAX_SUBSTEPS, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT
+             ": it spins too fast for the time step %g s at t = %g s (|L|/min J = %g rad/s; a step may hold %g rad)",
+             i, (double)dt, (double)rigid->t, (double)(Vec3Norm(b->L) / Jmin), .5 * RIGID_MAX_SUBSTEPS);
+  *nsub = PetscMax((PetscInt)n, 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Kick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], PetscReal dt)
+{
+  for (int k = 0; k < 3; k++) {
+    if (!b->spec.lock[k]) b->V[k] += dt * F[k] / b->spec.mass;
+    if (!b->spec.lock[3 + k]) b->L[k] += dt * T[k];
+  }
+}
+
+static PetscErrorCode AdvanceFree(Rigid rigid, PetscInt i, PetscReal dt)
+{
+  RigidBody *b = &rigid->body[i];
+  PetscReal F[3];
+  PetscInt nsub;
+
+  PetscFunctionBegin;
+  RigidBodyWeight(rigid, b, F);
+  for (int k = 0; k < 3; k++) F[k] += b->F[k];
+  Kick(b, F, b->T, .5 * dt);
+  for (int k = 0; k < 3; k++) b->X[k] += dt * b->V[k];
+  PetscCall(NumSubsteps(rigid, i, dt, &nsub));
+  for (PetscInt s = 0; s < nsub; s++) {
+    if (NumRotationLocks(b))
+      RotateLocked(b, dt / (PetscReal)nsub);
+    else
+      RotateFree(b, dt / (PetscReal)nsub);
+  }
+  Kick(b, F, b->T, .5 * dt);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt)
+{
+  RigidBody *b = &rigid->body[i];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCheck(!PetscIsInfOrNanReal(b->F[k]) && !PetscIsInfOrNanReal(b->T[k]), rigid->comm, PETSC_ERR_FP,
+               "Rigid body %" PetscInt_FMT ": force[%d] = %g N, torque[%d] = %g N m at t = %g s are not finite", i, k,
+               (double)b->F[k], k, (double)b->T[k], (double)rigid->t);
+    b->Fused[k] = b->F[k];
+    b->Tused[k] = b->T[k];
+  }
+  if (b->spec.motion == RIGID_FREE) PetscCall(AdvanceFree(rigid, i, dt));
+  if (b->spec.motion == RIGID_PRESCRIBED) {
+    PetscReal v[3], e[4], qn[4];
+    for (int k = 0; k < 3; k++) {
+      b->X[k] += dt * b->V[k];
+      v[k] = dt * b->w[k];
+    }
+    QuatExp(v, e);
+    QuatMult(e, b->q, qn);
+    QuatNormalize(qn);
+    for (int k = 0; k < 4; k++) b->q[k] = qn[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
