@@ -1,0 +1,558 @@
+/* ancf.c - lifecycle, beams, options and state of the Ancf object. */
+#include "ancfimpl.h"
+
+PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
+
+static const char *const AncfStrains[] = {"paper", "engineering", "AncfStrain", "ANCF_STRAIN_", NULL};
+static const char *const AncfForms[] = {"second order, M eddot + Q^e = Q^a", "first order, y = (e, v)",
+                                        "explicit, M factored once", "explicit, symplectic"};
+static const char *const AncfEnds[] = {"free", "pin", "clamp"};
+
+static PetscErrorCode AncfRegister(void)
+{
+  static PetscBool registered = PETSC_FALSE;
+  PetscClassId id;
+
+  PetscFunctionBegin;
+  if (registered) PetscFunctionReturn(PETSC_SUCCESS);
+  registered = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Ancf", &id));
+  PetscCall(PetscLogEventRegister("AncfAdvance", id, &ANCF_Advance));
+  PetscCall(PetscLogEventRegister("AncfForce", id, &ANCF_Force));
+  PetscCall(PetscLogEventRegister("AncfTangent", id, &ANCF_Tangent));
+  PetscCall(PetscLogEventRegister("AncfMassSolve", id, &ANCF_MassSolve));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfPrefixTS(Ancf ancf)
+{
+  PetscFunctionBegin;
+  PetscCall(TSSetOptionsPrefix(ancf->ts, ancf->prefix));
+  PetscCall(TSAppendOptionsPrefix(ancf->ts, "ancf_"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  AncfCreate - empty set of beams. One process per set: comm must have one rank (PETSC_ERR_SUP otherwise).
+*/
+PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf)
+{
+  PetscMPIInt size;
+  Ancf a;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCheck(size == 1, comm, PETSC_ERR_SUP, "AncfCreate: the communicator has %d ranks; beams need one (PETSC_COMM_SELF)", size);
+  PetscCall(AncfRegister());
+  PetscCall(PetscNew(&a));
+  a->comm = comm;
+  a->substeps = 1;
+  a->naxial = ANCF_DEFAULT_AXIAL;
+  a->nbending = ANCF_DEFAULT_BENDING;
+  PetscCall(AncfTSCreate(a));
+  PetscCall(AncfPrefixTS(a));
+  *ancf = a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options are then -<prefix>ancf_gravity, -<prefix>ancf_ts_type and so on. */
+PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(ancf->prefix));
+  PetscCall(PetscStrallocpy(prefix, &ancf->prefix));
+  PetscCall(AncfPrefixTS(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Four elements, everything free; the rest is invalid until set. */
+PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(spec, sizeof(*spec)));
+  spec->elements = 4;
+  spec->EA = spec->EI = spec->rhoA = PETSC_DECIDE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfCheckPositive(Ancf ancf, const char field[], PetscReal x, const char unit[])
+{
+  PetscFunctionBegin;
+  PetscCheck(PetscIsNormalReal(x) && x > 0, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": %s = %g %s must be positive and finite", ancf->nbeams, field, (double)x, unit);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfCheckVector(Ancf ancf, const char field[], const PetscReal x[3])
+{
+  PetscFunctionBegin;
+  PetscCheck(!PetscIsInfOrNanReal(x[0] + x[1] + x[2]), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": %s = (%g, %g, %g) must be finite", ancf->nbeams, field, (double)x[0], (double)x[1],
+             (double)x[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The section follows from d, E, rho_s unless given directly. */
+static PetscErrorCode AncfBeamSection(Ancf ancf, const AncfBeamSpec *spec, AncfBeam *beam)
+{
+  PetscReal d = spec->diameter;
+
+  PetscFunctionBegin;
+  PetscCall(AncfCheckPositive(ancf, "diameter", d, "m"));
+  beam->area = PETSC_PI * d * d / 4;
+  if (spec->EA == PETSC_DECIDE || spec->EI == PETSC_DECIDE) PetscCall(AncfCheckPositive(ancf, "young", spec->young, "Pa"));
+  if (spec->rhoA == PETSC_DECIDE) PetscCall(AncfCheckPositive(ancf, "density", spec->density, "kg/m^3"));
+  beam->EA = spec->EA == PETSC_DECIDE ? spec->young * beam->area : spec->EA;
+  beam->EI = spec->EI == PETSC_DECIDE ? spec->young * beam->area * d * d / 16 : spec->EI;
+  beam->rhoA = spec->rhoA == PETSC_DECIDE ? spec->density * beam->area : spec->rhoA;
+  PetscCall(AncfCheckPositive(ancf, "EA", beam->EA, "N"));
+  PetscCall(AncfCheckPositive(ancf, "EI", beam->EI, "N m^2"));
+  PetscCall(AncfCheckPositive(ancf, "rhoA", beam->rhoA, "kg/m"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  AncfAddBeam - appends a beam and returns its number.
+
+  Errors: PETSC_ERR_ARG_OUTOFRANGE with the field, its value and the rule; PETSC_ERR_ARG_WRONGSTATE after AncfSetUp().
+*/
+PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number)
+{
+  AncfBeam beam = {.spec = *spec};
+  PetscReal L = 0, speed = 0;
+
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "AncfAddBeam: beams cannot be added or changed after AncfSetUp()");
+  PetscCheck(spec->elements >= 1, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": elements = %" PetscInt_FMT " must be at least 1", ancf->nbeams, spec->elements);
+  PetscCall(AncfCheckVector(ancf, "start", spec->start));
+  PetscCall(AncfCheckVector(ancf, "end", spec->end));
+  PetscCall(AncfCheckVector(ancf, "velocity", spec->velocity));
+  for (PetscInt c = 0; c < 3; c++) {
+    L += PetscSqr(spec->end[c] - spec->start[c]);
+    speed += PetscSqr(spec->velocity[c]);
+  }
+  L = PetscSqrtReal(L);
+  PetscCheck(L > 0, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": start and end are the same point (%g, %g, %g), the length must be positive", ancf->nbeams,
+             (double)spec->start[0], (double)spec->start[1], (double)spec->start[2]);
+  PetscCheck(!PetscIsInfOrNanReal(L), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "Beam %" PetscInt_FMT ": length must be finite",
+             ancf->nbeams);
+  PetscCall(AncfBeamSection(ancf, spec, &beam));
+  for (int k = 0; k < 2; k++) {
+    AncfEnd end = k ? spec->end1 : spec->end0;
+
+    PetscCheck(end >= ANCF_END_FREE && end <= ANCF_END_CLAMP, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "Beam %" PetscInt_FMT ": end%d = %d must be ANCF_END_FREE, ANCF_END_PIN or ANCF_END_CLAMP", ancf->nbeams, k,
+               (int)end);
+    PetscCheck(end == ANCF_END_FREE || speed == 0, ancf->comm, PETSC_ERR_ARG_INCOMP,
+               "Beam %" PetscInt_FMT ": velocity = (%g, %g, %g) m/s must be zero because end%d is fixed (%s)", ancf->nbeams,
+               (double)spec->velocity[0], (double)spec->velocity[1], (double)spec->velocity[2], k, AncfEnds[end]);
+  }
+  beam.l = L / (PetscReal)spec->elements;
+  beam.node = ancf->nnodes;
+  beam.element = ancf->nelements;
+  if (ancf->nbeams == ancf->maxbeams) {
+    ancf->maxbeams = PetscMax(16, 2 * ancf->maxbeams);
+    PetscCall(PetscRealloc(sizeof(AncfBeam) * (size_t)ancf->maxbeams, &ancf->beams));
+  }
+  ancf->beams[ancf->nbeams] = beam;
+  if (number) *number = ancf->nbeams;
+  ancf->nbeams++;
+  ancf->nnodes += spec->elements + 1;
+  ancf->nelements += spec->elements;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gravitational acceleration, m/s^2; default 0. */
+PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3])
+{
+  PetscFunctionBegin;
+  PetscCheck(!PetscIsInfOrNanReal(g[0] + g[1] + g[2]), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_gravity %g,%g,%g must be finite", (double)g[0], (double)g[1], (double)g[2]);
+  for (int c = 0; c < 3; c++) ancf->gravity[c] = g[c];
+  if (ancf->setup) PetscCall(AncfSetUpWeight(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Density of the surrounding fluid, kg/m^3: gravity acts on rho_s A - rho A_outer, A_outer = pi d^2/4. 0: no buoyancy (default).
+ */
+PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho)
+{
+  PetscFunctionBegin;
+  PetscCheck(rho >= 0 && !PetscIsInfOrNanReal(rho), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_fluid_density %g kg/m^3 must be finite and not negative", (double)rho);
+  ancf->fluiddensity = rho;
+  if (ancf->setup) PetscCall(AncfSetUpWeight(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Number of TS steps in each AncfAdvance(), 1..1000; the paper uses 1..50 (Sect. 3). With an adaptive TS: of the first step. */
+PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio)
+{
+  PetscFunctionBegin;
+  PetscCheck(ratio >= 1 && ratio <= 1000, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_substeps %" PetscInt_FMT " must be in 1..1000", ratio);
+  ancf->substeps = ratio;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain)
+{
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_strain cannot change after AncfSetUp()");
+  PetscCheck(strain == ANCF_STRAIN_PAPER || strain == ANCF_STRAIN_ENGINEERING, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_strain %d must be paper or engineering", (int)strain);
+  ancf->strain = strain;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gauss points per element for the axial and the bending energy, 1..8 each. */
+PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending)
+{
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_quadrature_axial cannot change after AncfSetUp()");
+  PetscCheck(axial >= 1 && axial <= ANCF_MAX_GAUSS, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_quadrature_axial %" PetscInt_FMT " must be in 1..%d", axial, ANCF_MAX_GAUSS);
+  PetscCheck(bending >= 2 && bending <= ANCF_MAX_GAUSS, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_quadrature_bending %" PetscInt_FMT " must be in 2..%d", bending, ANCF_MAX_GAUSS);
+  ancf->naxial = axial;
+  ancf->nbending = bending;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfSetFromOptions(Ancf ancf)
+{
+  PetscReal g[3];
+  PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending;
+  PetscReal rho = ancf->fluiddensity;
+  AncfStrain strain = ancf->strain;
+  PetscBool flg, flg2;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(g, ancf->gravity, 3));
+  PetscOptionsBegin(ancf->comm, ancf->prefix, "Slender beams (ANCF)", "Ancf");
+  PetscCall(PetscOptionsRealArray("-ancf_gravity", "Gravitational acceleration, m/s^2", "AncfSetGravity", g, &n, &flg));
+  PetscCheck(!flg || n == 3, ancf->comm, PETSC_ERR_ARG_WRONG, "-ancf_gravity needs 3 numbers x,y,z, got %" PetscInt_FMT, n);
+  if (flg) PetscCall(AncfSetGravity(ancf, g));
+  PetscCall(PetscOptionsReal("-ancf_fluid_density", "Density of the surrounding fluid for buoyancy, kg/m^3 (0: none)",
+                             "AncfSetFluidDensity", rho, &rho, &flg));
+  if (flg) PetscCall(AncfSetFluidDensity(ancf, rho));
+  PetscCall(PetscOptionsInt("-ancf_substeps", "Beam steps per fluid step, 1..1000", "AncfSetSubsteps", sub, &sub, &flg));
+  if (flg) PetscCall(AncfSetSubsteps(ancf, sub));
+  PetscCall(PetscOptionsEnum("-ancf_strain", "Strain measures", "AncfSetStrain", AncfStrains, (PetscEnum)strain,
+                             (PetscEnum *)&strain, &flg));
+  if (flg) PetscCall(AncfSetStrain(ancf, strain));
+  PetscCall(PetscOptionsInt("-ancf_quadrature_axial", "Gauss points per element for the axial energy, 1..8", "AncfSetQuadrature",
+                            axial, &axial, &flg));
+  PetscCall(PetscOptionsInt("-ancf_quadrature_bending", "Gauss points per element for the bending energy, 2..8",
+                            "AncfSetQuadrature", bending, &bending, &flg2));
+  if (flg || flg2) PetscCall(AncfSetQuadrature(ancf, axial, bending));
+  PetscOptionsEnd();
+  PetscCall(TSSetFromOptions(ancf->ts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Q^g = integral of (rho_s A - rho A_outer) S^T g (Eq. 24 less buoyancy). */
+PetscErrorCode AncfSetUpWeight(Ancf ancf)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(ancf->weight, 6 * ancf->nnodes));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeam *beam = &ancf->beams[b];
+    PetscReal w[4], q = beam->rhoA - ancf->fluiddensity * beam->area;
+
+    AncfElementLoad(beam->l, w);
+    for (PetscInt k = 0; k < beam->spec.elements; k++)
+      for (PetscInt i = 0; i < 4; i++)
+        for (PetscInt c = 0; c < 3; c++) ancf->weight[6 * (beam->node + k) + 3 * i + c] += w[i] * q * ancf->gravity[c];
+  }
+  ancf->avalid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AncfSetUpNodes(Ancf ancf)
+{
+  static const unsigned char bits[3] = {0, ANCF_FIX_POSITION, ANCF_FIX_POSITION | ANCF_FIX_GRADIENT};
+
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeamSpec *s = &ancf->beams[b].spec;
+
+    for (PetscInt k = 0; k <= s->elements; k++) {
+      PetscInt j = ancf->beams[b].node + k;
+      PetscReal xi = (PetscReal)k / (PetscReal)s->elements, L = ancf->beams[b].l * (PetscReal)s->elements;
+
+      for (PetscInt c = 0; c < 3; c++) {
+        ancf->e[6 * j + c] = s->start[c] * (1 - xi) + s->end[c] * xi;
+        ancf->e[6 * j + 3 + c] = (s->end[c] - s->start[c]) / L;
+        ancf->v[6 * j + c] = s->velocity[c];
+      }
+    }
+    ancf->fixed[ancf->beams[b].node] = bits[s->end0];
+    ancf->fixed[ancf->beams[b].node + s->elements] = bits[s->end1];
+  }
+}
+
+static PetscErrorCode AncfSetUpBatches(Ancf ancf)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  ancf->nbatches = (ancf->nelements + ANCF_LANES - 1) / ANCF_LANES;
+  PetscCall(PetscCalloc1(ancf->nbatches, &ancf->batches));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeam *beam = &ancf->beams[b];
+
+    for (PetscInt k = 0; k < beam->spec.elements; k++, n++) {
+      AncfBatch *batch = &ancf->batches[n / ANCF_LANES];
+
+      batch->n = n % ANCF_LANES + 1;
+      for (PetscInt i = n % ANCF_LANES; i < ANCF_LANES; i++) {
+        batch->node[i] = beam->node + k;
+        batch->EA[i] = beam->EA;
+        batch->EI[i] = beam->EI;
+        batch->rhoA[i] = beam->rhoA;
+        batch->l[i] = beam->l;
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfSetUp(Ancf ancf)
+{
+  PetscInt n;
+
+  PetscFunctionBegin;
+  if (ancf->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(ancf->nbeams > 0, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetUp: no beams, call AncfAddBeam() first");
+  n = 6 * ancf->nnodes;
+  PetscCall(PetscCalloc6(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->rest));
+  PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * ancf->nnodes, &ancf->mass));
+  PetscCall(AncfRuleSetUp(&ancf->rule, ancf->strain, ancf->naxial, ancf->nbending));
+  AncfSetUpNodes(ancf);
+  PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
+  PetscCall(AncfSetUpBatches(ancf));
+  PetscCall(AncfSetUpWeight(ancf));
+  PetscCall(AncfMassFactor(ancf));
+  PetscCall(AncfTSSetUp(ancf));
+  ancf->setup = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
+{
+  PetscBool ascii;
+
+  PetscFunctionBegin;
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(ancf->comm, &viewer));
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "Slender beams (ANCF)\n"));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "beams %" PetscInt_FMT ", elements %" PetscInt_FMT ", nodes %" PetscInt_FMT "\n",
+                                   ancf->nbeams, ancf->nelements, ancf->nnodes));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "strain %s, Gauss points: axial %" PetscInt_FMT ", bending %" PetscInt_FMT "\n",
+                                   AncfStrains[ancf->strain], ancf->naxial, ancf->nbending));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "gravity (%g, %g, %g) m/s^2, fluid density for buoyancy %g kg/m^3\n",
+                                   (double)ancf->gravity[0], (double)ancf->gravity[1], (double)ancf->gravity[2],
+                                   (double)ancf->fluiddensity));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT "\n", ancf->substeps));
+  for (PetscInt b = 0; b < PetscMin(ancf->nbeams, 10); b++) {
+    const AncfBeam *m = &ancf->beams[b];
+
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer,
+        "beam %" PetscInt_FMT ": %" PetscInt_FMT " elements, L %g m, d %g m, EA %g N, EI %g N m^2, rhoA %g kg/m, ends %s/%s\n", b,
+        m->spec.elements, (double)(m->l * (PetscReal)m->spec.elements), (double)m->spec.diameter, (double)m->EA, (double)m->EI,
+        (double)m->rhoA, AncfEnds[m->spec.end0], AncfEnds[m->spec.end1]));
+  }
+  if (ancf->nbeams > 10) PetscCall(PetscViewerASCIIPrintf(viewer, "and %" PetscInt_FMT " more beams\n", ancf->nbeams - 10));
+  if (ancf->setup) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "form: %s\n", AncfForms[ancf->form]));
+    PetscCall(TSView(ancf->ts, viewer));
+  }
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfDestroy(Ancf *ancf)
+{
+  Ancf a;
+
+  PetscFunctionBegin;
+  if (!ancf || !*ancf) PetscFunctionReturn(PETSC_SUCCESS);
+  a = *ancf;
+  PetscCall(AncfTSDestroy(a));
+  PetscCall(PetscFree6(a->e, a->v, a->a, a->load, a->weight, a->rest));
+  PetscCall(PetscFree2(a->fixed, a->mass));
+  PetscCall(PetscFree(a->batches));
+  PetscCall(PetscFree(a->beams));
+  PetscCall(PetscFree(a->prefix));
+  PetscCall(PetscFree(*ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The TS that integrates the beams, for choices without an option of ours; borrowed. */
+PetscErrorCode AncfGetTS(Ancf ancf, TS *ts)
+{
+  PetscFunctionBegin;
+  *ts = ancf->ts;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetNumBeams(Ancf ancf, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = ancf->nbeams;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetNumNodes(Ancf ancf, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = ancf->nnodes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Any output may be NULL; the spec is returned with EA, EI and rhoA resolved. */
+PetscErrorCode AncfGetBeam(Ancf ancf, PetscInt beam, AncfBeamSpec *spec, PetscInt *firstnode, PetscReal *elementlength)
+{
+  PetscFunctionBegin;
+  PetscCheck(beam >= 0 && beam < ancf->nbeams, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT " must be in 0..%" PetscInt_FMT, beam, ancf->nbeams - 1);
+  if (spec) {
+    *spec = ancf->beams[beam].spec;
+    spec->EA = ancf->beams[beam].EA;
+    spec->EI = ancf->beams[beam].EI;
+    spec->rhoA = ancf->beams[beam].rhoA;
+  }
+  if (firstnode) *firstnode = ancf->beams[beam].node;
+  if (elementlength) *elementlength = ancf->beams[beam].l;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetState(Ancf ancf, PetscReal *t, const PetscReal **e, const PetscReal **edot, const PetscReal **eddot)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetState: call AncfSetUp() first");
+  if (eddot) PetscCall(AncfComputeAcceleration(ancf));
+  if (t) *t = ancf->t;
+  if (e) *e = ancf->e;
+  if (edot) *edot = ancf->v;
+  if (eddot) *eddot = ancf->a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The beam of a node. */
+PetscInt AncfFindBeam(Ancf ancf, PetscInt node)
+{
+  PetscInt lo = 0, hi = ancf->nbeams;
+
+  while (hi - lo > 1) {
+    PetscInt mid = (lo + hi) / 2;
+
+    if (ancf->beams[mid].node <= node)
+      lo = mid;
+    else
+      hi = mid;
+  }
+  return lo;
+}
+
+/* PETSC_ERR_FP with beam, node and time when an array of nodes x 6 holds a NaN or an infinity. */
+PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
+    PetscInt b;
+
+    if (PetscLikely(!PetscIsInfOrNanReal(x[i]))) continue;
+    b = AncfFindBeam(ancf, i / 6);
+    SETERRQ(ancf->comm, PETSC_ERR_FP,
+            "Beam %" PetscInt_FMT ", node %" PetscInt_FMT ": %s coordinate %" PetscInt_FMT " is %g at t = %g s", b,
+            i / 6 - ancf->beams[b].node, what, i % 6, (double)x[i], (double)t);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  AncfSetState - replaces time, coordinates and velocities (nodes x 6 each); multistep history is discarded.
+  Fixed coordinates keep their new values from now on; their velocities must be zero.
+*/
+PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const PetscReal *edot)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetState: call AncfSetUp() first");
+  PetscCheck(!PetscIsInfOrNanReal(t), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "AncfSetState: time %g must be finite", (double)t);
+  PetscCall(AncfCheckFinite(ancf, "position", e, t));
+  PetscCall(AncfCheckFinite(ancf, "velocity", edot, t));
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
+    PetscInt b = AncfFindBeam(ancf, i / 6);
+
+    PetscCheck(edot[i] == 0 || !(ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)), ancf->comm,
+               PETSC_ERR_ARG_INCOMP,
+               "AncfSetState: beam %" PetscInt_FMT ", node %" PetscInt_FMT ": velocity %g of a fixed coordinate must be zero", b,
+               i / 6 - ancf->beams[b].node, (double)edot[i]);
+  }
+  if (e != ancf->e) PetscCall(PetscArraycpy(ancf->e, e, 6 * ancf->nnodes));
+  if (edot != ancf->v) PetscCall(PetscArraycpy(ancf->v, edot, 6 * ancf->nnodes));
+  PetscCall(PetscArraycpy(ancf->rest, e, 6 * ancf->nnodes));
+  ancf->t = t;
+  ancf->avalid = PETSC_FALSE;
+  PetscCall(AncfTSPush(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfZeroLoads(Ancf ancf)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfZeroLoads: call AncfSetUp() first");
+  PetscCall(PetscArrayzero(ancf->load, 6 * ancf->nnodes));
+  ancf->avalid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetLoads: call AncfSetUp() first");
+  *Q = ancf->load;
+  ancf->avalid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear)
+{
+  PetscInt s = 0, n = 0, l = 0;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetStepNumber(ancf->ts, &s));
+  PetscCall(TSGetSNESIterations(ancf->ts, &n));
+  PetscCall(TSGetKSPIterations(ancf->ts, &l));
+  if (steps) *steps = s;
+  if (newton) *newton = n;
+  if (linear) *linear = l;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  AncfAdvance - integrates to time t (> the current one) under the present loads.
+
+  Errors: PETSC_ERR_FP for non-finite loads or results, PETSC_ERR_NOT_CONVERGED when Newton's method fails even after the
+  step was reduced. After an error the state is that before the call.
+*/
+PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfAdvance: call AncfSetUp() first");
+  PetscCheck(t > ancf->t && !PetscIsInfOrNanReal(t), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "AncfAdvance: time %g s must be finite and after the current time %g s", (double)t, (double)ancf->t);
+  PetscCall(AncfCheckFinite(ancf, "load", ancf->load, ancf->t));
+  PetscCall(PetscLogEventBegin(ANCF_Advance, 0, 0, 0, 0));
+  PetscCall(AncfTSSolve(ancf, t));
+  PetscCall(PetscLogEventEnd(ANCF_Advance, 0, 0, 0, 0));
+  ancf->avalid = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,83 @@
+/*
+  ancf.h - public interface of the slender beams of Frond.
+
+  Gradient-deficient ANCF cable elements (Pazouki, Serban, Negrut, Eqs. 18-30): each node carries six
+  coordinates e_j = [r_j, r_j,x], position (m) and position gradient (-). All beams of one Ancf object are one
+  block-tridiagonal system, integrated by PETSc TS (prefix -ancf_).
+
+  Array layout: node arrays are nodes x 6, node by node, beam after beam in the order of AncfAddBeam.
+*/
+#ifndef ANCF_H
+#define ANCF_H
+
+#include "frondsys.h"
+#include <petscts.h>
+
+typedef struct _p_Ancf *Ancf;
+
+/* Strain measures: PAPER eps = (r'.r'-1)/2, kappa = |r' x r''|/|r'|^3; ENGINEERING eps = |r'|-1, kappa = |r' x r''|/|r'|^2. */
+typedef enum { ANCF_STRAIN_PAPER, ANCF_STRAIN_ENGINEERING } AncfStrain;
+
+/* What a beam end may do. Free: all 6 coordinates; pin: position fixed; clamp: position and gradient fixed. */
+typedef enum { ANCF_END_FREE, ANCF_END_PIN, ANCF_END_CLAMP } AncfEnd;
+
+/* Straight beam with a circular section; every field must be set. AncfBeamSpecInit() gives the defaults. */
+typedef struct {
+  PetscReal start[3];     /* first node, m */
+  PetscReal end[3];       /* last node, m; |end-start| is the rest length L */
+  PetscInt elements;      /* number of elements, >= 1 */
+  PetscReal diameter;     /* d, m: the outer diameter that the fluid sees; A = pi d^2/4, I = pi d^4/64 */
+  PetscReal density;      /* rho_s, kg/m^3 */
+  PetscReal young;        /* E, Pa */
+  PetscReal EA, EI, rhoA; /* overrides, N, N m^2, kg/m; PETSC_DECIDE (-1): derived from d, E, rho_s */
+  PetscReal velocity[3];  /* initial velocity, m/s */
+  AncfEnd end0, end1;     /* boundary conditions at start and end */
+} AncfBeamSpec;
+
+FROND_EXTERN PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf);
+FROND_EXTERN PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[]);
+FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
+FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
+FROND_EXTERN PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3]);
+FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
+FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
+FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
+FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
+FROND_EXTERN PetscErrorCode AncfSetFromOptions(Ancf ancf);
+FROND_EXTERN PetscErrorCode AncfSetUp(Ancf ancf);
+FROND_EXTERN PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer);
+FROND_EXTERN PetscErrorCode AncfDestroy(Ancf *ancf);
+
+FROND_EXTERN PetscErrorCode AncfGetTS(Ancf ancf, TS *ts);
+FROND_EXTERN PetscErrorCode AncfGetNumBeams(Ancf ancf, PetscInt *n);
+FROND_EXTERN PetscErrorCode AncfGetNumNodes(Ancf ancf, PetscInt *n);
+FROND_EXTERN PetscErrorCode AncfGetBeam(Ancf ancf, PetscInt beam, AncfBeamSpec *spec, PetscInt *firstnode,
+                                        PetscReal *elementlength);
+
+/* State at the current time: positions, velocities, accelerations of the nodal coordinates; borrowed, nodes x 6. */
+FROND_EXTERN PetscErrorCode AncfGetState(Ancf ancf, PetscReal *t, const PetscReal **e, const PetscReal **edot,
+                                         const PetscReal **eddot);
+FROND_EXTERN PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const PetscReal *edot);
+
+/* Generalised applied forces Q^a (nodes x 6), held constant over the next AncfAdvance(). */
+FROND_EXTERN PetscErrorCode AncfZeroLoads(Ancf ancf);
+FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
+
+/* Integrate from the current time to t with `substeps` TS steps (or adaptively). */
+FROND_EXTERN PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t);
+
+/* Energies, J: kinetic, elastic (axial + bending), potential (-sum rho_s A g.r, buoyancy-reduced). */
+FROND_EXTERN PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, PetscReal *potential);
+/* Total linear momentum (kg m/s) and angular momentum about the origin (kg m^2/s); either may be NULL. */
+FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3]);
+/* Force of the supports (clamped and pinned ends) on the beams, and of gravity less buoyancy, N. */
+FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
+FROND_EXTERN PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3]);
+/* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations. */
+FROND_EXTERN PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear);
+
+/* Shape functions S1..S4 of Eq. 19 and their x-derivatives at xi in [0,1] of an element of length l (m). */
+FROND_EXTERN void AncfShape(PetscReal xi, PetscReal l, PetscReal S[4]);
+FROND_EXTERN void AncfShapeX(PetscReal xi, PetscReal l, PetscReal Sx[4]);
+
+#endif

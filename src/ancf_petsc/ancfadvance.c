@@ -1,0 +1,127 @@
+/* ancfadvance.c - one call of AncfAdvance(): repeated TSSolve(), Newton's tolerances, and what is said when a step fails. */
+#include "ancfimpl.h"
+
+/*
+  Newton cannot reduce the residual below the round-off of its largest terms: the axial force EA and the inertia of the
+  eliminated step, about rhoA l |r| 4/dt^2. Below a few ulps of these the iterate is as good as it gets.
+*/
+static PetscErrorCode AncfSetNewtonFloor(Ancf ancf, PetscReal dt)
+{
+  PetscReal scale = 0, size = 0, abstol, rtol, stol;
+  PetscInt maxit, maxf;
+  SNES snes;
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 3; c++) size = PetscMax(size, PetscAbsReal(ancf->e[6 * j + c]));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeam *m = &ancf->beams[b];
+
+    scale = PetscMax(scale, m->EA + m->rhoA * m->l * size * 4 / (dt * dt));
+  }
+  abstol = 4 * PETSC_MACHINE_EPSILON * scale * PetscSqrtReal((PetscReal)ancf->nnodes);
+  PetscCall(TSGetSNES(ancf->ts, &snes));
+  PetscCall(SNESGetTolerances(snes, NULL, &rtol, &stol, &maxit, &maxf));
+  PetscCall(SNESSetTolerances(snes, abstol, rtol, stol, maxit, maxf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The node with the largest residual of the last Newton iterate, a NaN counting as largest. */
+static PetscErrorCode AncfWorstNode(Ancf ancf, PetscInt *node, PetscReal *size)
+{
+  Vec F = NULL;
+  SNES snes;
+  const PetscScalar *f;
+  PetscInt n, bs;
+
+  PetscFunctionBegin;
+  *node = -1;
+  *size = 0;
+  PetscCall(TSGetSNES(ancf->ts, &snes));
+  PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
+  if (!F) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetLocalSize(F, &n));
+  bs = n / ancf->nnodes;
+  PetscCall(VecGetArrayRead(F, &f));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal r = PetscAbsScalar(f[i]);
+
+    if (!(r <= *size) || *node < 0) {
+      *node = i / bs;
+      *size = r;
+      if (PetscIsInfOrNanReal(r)) break;
+    }
+  }
+  PetscCall(VecRestoreArrayRead(F, &f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfRestore(Ancf ancf, PetscReal t)
+{
+  const PetscInt n = 6 * ancf->nnodes;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(ancf->e, ancf->backup, n));
+  PetscCall(PetscArraycpy(ancf->v, ancf->backup + n, n));
+  ancf->t = t;
+  ancf->avalid = PETSC_FALSE;
+  PetscCall(AncfTSPush(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Restores the state at t0 and reports why TS stopped. */
+static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason)
+{
+  PetscReal t, dt, size;
+  PetscInt node, b;
+  SNES snes;
+  SNESConvergedReason why;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetTime(ancf->ts, &t));
+  PetscCall(TSGetTimeStep(ancf->ts, &dt));
+  PetscCall(TSGetSNES(ancf->ts, &snes));
+  PetscCall(SNESGetConvergedReason(snes, &why));
+  PetscCall(AncfWorstNode(ancf, &node, &size));
+  PetscCall(AncfRestore(ancf, t0));
+  PetscCheck(node >= 0, ancf->comm, PETSC_ERR_NOT_CONVERGED, "Beam step at t = %g s failed: %s", (double)t,
+             TSConvergedReasons[reason]);
+  b = AncfFindBeam(ancf, node);
+  SETERRQ(ancf->comm, PETSC_ERR_NOT_CONVERGED,
+          "Newton failed (%s) at t = %g s even with the step reduced to %g s: largest residual %g N at beam %" PetscInt_FMT
+          ", node %" PetscInt_FMT " of %" PetscInt_FMT "; use a smaller step (-ancf_substeps) or softer loads",
+          SNESConvergedReasons[why], (double)t, (double)dt, (double)size, b, node - ancf->beams[b].node,
+          ancf->beams[b].spec.elements + 1);
+}
+
+PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
+{
+  const PetscInt n = 6 * ancf->nnodes;
+  const PetscReal t0 = ancf->t;
+  PetscReal dt = (t - t0) / (PetscReal)ancf->substeps;
+  PetscBool fixedstep;
+  TSAdapt adapt;
+  TSConvergedReason reason;
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(ancf->backup, ancf->e, n));
+  PetscCall(PetscArraycpy(ancf->backup + n, ancf->v, n));
+  PetscCall(TSGetAdapt(ancf->ts, &adapt));
+  PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
+  if (!fixedstep && ancf->step > 0) dt = PetscMin(ancf->step, t - t0);
+  PetscCall(AncfSetNewtonFloor(ancf, dt));
+  PetscCall(TSSetMaxTime(ancf->ts, t));
+  PetscCall(TSSetTimeStep(ancf->ts, dt));
+  PetscCall(TSSolve(ancf->ts, NULL));
+  PetscCall(TSGetConvergedReason(ancf->ts, &reason));
+  if (reason < 0) PetscCall(AncfFail(ancf, t0, reason));
+  PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));
+  PetscCall(AncfTSPull(ancf));
+  ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
+  if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
+  if (ierr) PetscCall(AncfRestore(ancf, t0));
+  PetscCall(ierr);
+  ancf->t = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,333 @@
+/* ancfelement.c - shape functions, elastic force and tangent, mass and uniform load of the ANCF cable element. */
+#include "ancfelement.h"
+#include <petscdt.h>
+
+/* Eq. 19 */
+void AncfShape(PetscReal xi, PetscReal l, PetscReal S[4])
+{
+  S[0] = 1 - xi * xi * (3 - 2 * xi);
+  S[1] = l * xi * (1 - xi) * (1 - xi);
+  S[2] = xi * xi * (3 - 2 * xi);
+  S[3] = l * xi * xi * (xi - 1);
+}
+
+/* d/dx of Eq. 19 */
+void AncfShapeX(PetscReal xi, PetscReal l, PetscReal Sx[4])
+{
+  Sx[0] = -6 * xi * (1 - xi) / l;
+  Sx[1] = (1 - xi) * (1 - 3 * xi);
+  Sx[2] = -Sx[0];
+  Sx[3] = xi * (3 * xi - 2);
+}
+
+static PetscErrorCode AncfGaussSetUp(AncfGauss *g, PetscInt n)
+{
+  PetscFunctionBegin;
+  PetscCheck(n >= 1 && n <= ANCF_MAX_GAUSS, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "Gauss points per element %" PetscInt_FMT " must be in 1..%d", n, ANCF_MAX_GAUSS);
+  g->n = n;
+  PetscCall(PetscDTGaussQuadrature(n, 0, 1, g->xi, g->w));
+  for (PetscInt q = 0; q < n; q++) {
+    PetscReal x = g->xi[q];
+
+    g->s1[q][0] = (1 - x) * (1 - 3 * x);
+    g->s1[q][1] = 6 * x * (1 - x);
+    g->s1[q][2] = x * (3 * x - 2);
+    g->s2[q][0] = 6 * x - 4;
+    g->s2[q][1] = 6 - 12 * x;
+    g->s2[q][2] = 6 * x - 2;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfRuleSetUp(AncfRule *rule, AncfStrain strain, PetscInt naxial, PetscInt nbending)
+{
+  PetscFunctionBegin;
+  rule->strain = strain;
+  PetscCall(AncfGaussSetUp(&rule->axial, naxial));
+  PetscCall(AncfGaussSetUp(&rule->bending, nbending));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline AncfLanes LanesSqrt(AncfLanes a)
+{
+  for (int i = 0; i < ANCF_LANES; i++) a[i] = PetscSqrtReal(a[i]);
+  return a;
+}
+
+static inline AncfLanes Dot(const AncfLanes a[3], const AncfLanes b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Scaled coordinates d[0..2] = l r_0,x, r_1 - r_0, l r_1,x: the position vector's derivatives need only these. */
+static inline void Scaled(const AncfLanes e[12], AncfLanes l, AncfLanes d[3][3])
+{
+  for (int c = 0; c < 3; c++) {
+    d[0][c] = l * e[3 + c];
+    d[1][c] = e[6 + c] - e[c];
+    d[2][c] = l * e[9 + c];
+  }
+}
+
+/* r' or r'' from table row s; scale is 1/l or 1/l^2. */
+static inline void Derivative(AncfLanes d[3][3], const PetscReal s[3], AncfLanes scale, AncfLanes r[3])
+{
+  for (int c = 0; c < 3; c++) r[c] = (s[0] * d[0][c] + s[1] * d[1][c] + s[2] * d[2][c]) * scale;
+}
+
+/* Axial energy density EA f/2 with f(a) = eps^2, a = r'.r': f, df/da, d2f/da2. */
+static inline void AxialInvariant(AncfStrain strain, AncfLanes a, AncfLanes f[3])
+{
+  if (strain == ANCF_STRAIN_PAPER) {
+    AncfLanes eps = 0.5 * (a - 1.0);
+
+    f[0] = eps * eps;
+    f[1] = eps;
+    f[2] = 0.5 - 0.0 * a;
+  } else {
+    AncfLanes s = LanesSqrt(a), inv = 1.0 / s;
+
+    f[0] = (s - 1.0) * (s - 1.0);
+    f[1] = 1.0 - inv;
+    f[2] = 0.5 * inv * inv * inv;
+  }
+}
+
+/* Bending energy density EI g/2 with g = kappa^2 = (a c - b^2)/a^p, a = r'.r', b = r'.r'', c = r''.r'', p = 3 (paper) or 2.
+   kappa^2 is smooth where kappa is zero, unlike kappa. */
+typedef struct {
+  AncfLanes g, a, b, c, aa, ab, ac, bb; /* g and its partial derivatives */
+} BendingInvariant;
+
+static inline void BendingGradient(AncfStrain strain, AncfLanes a, AncfLanes b, AncfLanes c, AncfLanes *ip, BendingInvariant *v)
+{
+  AncfLanes i = 1.0 / a, p = strain == ANCF_STRAIN_PAPER ? i * i * i : i * i; /* a^-p */
+  PetscReal n = strain == ANCF_STRAIN_PAPER ? 3 : 2;
+
+  v->g = (a * c - b * b) * p;
+  v->a = c * p - n * i * v->g;
+  v->b = -2.0 * b * p;
+  v->c = a * p;
+  ip[0] = i;
+  ip[1] = p;
+}
+
+static inline void BendingHessian(AncfStrain strain, AncfLanes b, AncfLanes c, const AncfLanes *ip, BendingInvariant *v)
+{
+  AncfLanes i = ip[0], p = ip[1];
+  PetscReal n = strain == ANCF_STRAIN_PAPER ? 3 : 2;
+
+  v->aa = n * p * i * ((n - 1) * c - (n + 1) * b * b * i);
+  v->ab = 2.0 * n * b * p * i;
+  v->ac = (1 - n) * p;
+  v->bb = -2.0 * p;
+}
+
+/* Generalised force from the derivatives q of the energy by the three scaled coordinates. */
+static inline void ForceExpand(AncfLanes q[3][3], AncfLanes l, AncfLanes Q[12])
+{
+  for (int c = 0; c < 3; c++) {
+    Q[c] = -q[1][c];
+    Q[3 + c] = l * q[0][c];
+    Q[6 + c] = q[1][c];
+    Q[9 + c] = l * q[2][c];
+  }
+}
+
+void AncfElementForce(const AncfRule *rule, const AncfSection *s, const AncfLanes e[12], AncfLanes Q[12], AncfLanes *U)
+{
+  AncfLanes d[3][3], q[3][3], u = {0}, il = 1.0 / s->l, il2 = il * il;
+
+  Scaled(e, s->l, d);
+  for (int i = 0; i < 3; i++)
+    for (int c = 0; c < 3; c++) q[i][c] = (AncfLanes){0};
+  for (PetscInt k = 0; k < rule->axial.n; k++) {
+    AncfLanes r1[3], f[3], n, w = rule->axial.w[k] * s->EA;
+
+    Derivative(d, rule->axial.s1[k], il, r1);
+    AxialInvariant(rule->strain, Dot(r1, r1), f);
+    u += 0.5 * w * s->l * f[0];
+    n = w * f[1]; /* dx = l dxi cancels the 1/l of S' */
+    for (int i = 0; i < 3; i++)
+      for (int c = 0; c < 3; c++) q[i][c] += rule->axial.s1[k][i] * n * r1[c];
+  }
+  for (PetscInt k = 0; k < rule->bending.n; k++) {
+    AncfLanes r1[3], r2[3], ip[2], w = 0.5 * rule->bending.w[k] * s->EI;
+    BendingInvariant v;
+
+    Derivative(d, rule->bending.s1[k], il, r1);
+    Derivative(d, rule->bending.s2[k], il2, r2);
+    BendingGradient(rule->strain, Dot(r1, r1), Dot(r1, r2), Dot(r2, r2), ip, &v);
+    u += w * s->l * v.g;
+    for (int c = 0; c < 3; c++) {
+      AncfLanes g1 = w * (2.0 * v.a * r1[c] + v.b * r2[c]);
+      AncfLanes g2 = w * (v.b * r1[c] + 2.0 * v.c * r2[c]) * il;
+
+      for (int i = 0; i < 3; i++) q[i][c] += rule->bending.s1[k][i] * g1 + rule->bending.s2[k][i] * g2;
+    }
+  }
+  ForceExpand(q, s->l, Q);
+  if (U) *U = u;
+}
+
+static const int sym_row[6] = {0, 0, 0, 1, 1, 2}, sym_col[6] = {0, 1, 2, 1, 2, 2};
+static const int sym_of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+static const int off_row[3] = {0, 0, 1}, off_col[3] = {1, 2, 2};
+
+/* Axial points: EA (f' I + 2 f'' r' r'^T) S'_i S'_j, symmetric 3 x 3 for every pair (i,j). */
+static inline void AxialTangent(const AncfRule *rule, const AncfSection *s, AncfLanes d[3][3], AncfLanes il, AncfLanes q[3][3],
+                                AncfLanes K[ANCF_TANGENT])
+{
+  const AncfGauss *g = &rule->axial;
+  AncfLanes off[3][6];
+
+  for (int b = 0; b < 3; b++)
+    for (int m = 0; m < 6; m++) off[b][m] = (AncfLanes){0};
+  for (PetscInt k = 0; k < g->n; k++) {
+    AncfLanes r1[3], f[3], A[6], w = g->w[k] * s->EA, n;
+
+    Derivative(d, g->s1[k], il, r1);
+    AxialInvariant(rule->strain, Dot(r1, r1), f);
+    n = w * f[1];
+    for (int i = 0; i < 3; i++)
+      for (int c = 0; c < 3; c++) q[i][c] += g->s1[k][i] * n * r1[c];
+    for (int m = 0; m < 6; m++) {
+      A[m] = 2.0 * w * il * f[2] * r1[sym_row[m]] * r1[sym_col[m]];
+      if (sym_row[m] == sym_col[m]) A[m] += n * il;
+      for (int i = 0; i < 3; i++) K[6 * i + m] += g->s1[k][i] * g->s1[k][i] * A[m];
+      for (int b = 0; b < 3; b++) off[b][m] += g->s1[k][off_row[b]] * g->s1[k][off_col[b]] * A[m];
+    }
+  }
+  for (int b = 0; b < 3; b++)
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) K[18 + 9 * b + 3 * i + j] += off[b][sym_of[i][j]];
+}
+
+/* Second derivatives of the bending energy at one point by r', r'': A = d2/dr'dr', B = d2/dr'dr'', C = d2/dr''dr''. */
+static inline void BendingBlocks(const BendingInvariant *v, AncfLanes w, AncfLanes il, const AncfLanes r1[3],
+                                 const AncfLanes r2[3], AncfLanes A[9], AncfLanes B[9], AncfLanes C[9])
+{
+  AncfLanes wA = w * il, wB = wA * il, wC = wB * il;
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      AncfLanes r11 = r1[i] * r1[j], r12 = r1[i] * r2[j], r21 = r2[i] * r1[j], r22 = r2[i] * r2[j];
+
+      A[3 * i + j] = wA * (4.0 * v->aa * r11 + 2.0 * v->ab * (r12 + r21) + v->bb * r22 + (i == j ? 2.0 * v->a : 0.0 * wA));
+      B[3 * i + j] = wB * (2.0 * v->ab * r11 + 4.0 * v->ac * r12 + v->bb * r21 + (i == j ? v->b : 0.0 * wA));
+      C[3 * i + j] = wC * (v->bb * r11 + (i == j ? 2.0 * v->c : 0.0 * wA));
+    }
+}
+
+static inline void BendingTangent(const AncfRule *rule, const AncfSection *s, AncfLanes d[3][3], AncfLanes il, AncfLanes q[3][3],
+                                  AncfLanes K[ANCF_TANGENT])
+{
+  const AncfGauss *g = &rule->bending;
+
+  for (PetscInt k = 0; k < g->n; k++) {
+    const PetscReal *s1 = g->s1[k], *s2 = g->s2[k];
+    AncfLanes r1[3], r2[3], ip[2], A[9], B[9], C[9], w = 0.5 * g->w[k] * s->EI, b, c;
+    BendingInvariant v;
+
+    Derivative(d, s1, il, r1);
+    Derivative(d, s2, il * il, r2);
+    b = Dot(r1, r2);
+    c = Dot(r2, r2);
+    BendingGradient(rule->strain, Dot(r1, r1), b, c, ip, &v);
+    BendingHessian(rule->strain, b, c, ip, &v);
+    for (int m = 0; m < 3; m++) {
+      AncfLanes g1 = w * (2.0 * v.a * r1[m] + v.b * r2[m]);
+      AncfLanes g2 = w * (v.b * r1[m] + 2.0 * v.c * r2[m]) * il;
+
+      for (int i = 0; i < 3; i++) q[i][m] += s1[i] * g1 + s2[i] * g2;
+    }
+    BendingBlocks(&v, w, il, r1, r2, A, B, C);
+    for (int j = 0; j < 3; j++) {
+      AncfLanes T1[9], T2[9]; /* K_ij = S'_i T1_j + S''_i T2_j */
+
+      for (int m = 0; m < 9; m++) {
+        T1[m] = s1[j] * A[m] + s2[j] * B[m];
+        T2[m] = s1[j] * B[3 * (m % 3) + m / 3] + s2[j] * C[m];
+      }
+      for (int m = 0; m < 6; m++) {
+        int o = 3 * sym_row[m] + sym_col[m];
+        K[6 * j + m] += s1[j] * T1[o] + s2[j] * T2[o];
+      }
+      for (int i = 0; i < j; i++)
+        for (int m = 0; m < 9; m++) K[18 + 9 * (i + j - 1) + m] += s1[i] * T1[m] + s2[i] * T2[m];
+    }
+  }
+}
+
+void AncfElementTangent(const AncfRule *rule, const AncfSection *s, const AncfLanes e[12], AncfLanes Q[12],
+                        AncfLanes K[ANCF_TANGENT])
+{
+  AncfLanes d[3][3], q[3][3], il = 1.0 / s->l, l = s->l, l2 = l * l;
+
+  Scaled(e, l, d);
+  for (int i = 0; i < 3; i++)
+    for (int c = 0; c < 3; c++) q[i][c] = (AncfLanes){0};
+  for (int m = 0; m < ANCF_TANGENT; m++) K[m] = (AncfLanes){0};
+  AxialTangent(rule, s, d, il, q, K);
+  BendingTangent(rule, s, d, il, q, K);
+  ForceExpand(q, l, Q);
+  for (int m = 0; m < 6; m++) {
+    K[m] *= l2;
+    K[12 + m] *= l2;
+  }
+  for (int m = 0; m < 9; m++) {
+    K[18 + m] *= l;
+    K[27 + m] *= l2;
+    K[36 + m] *= l;
+  }
+}
+
+void AncfTangentExpand(const AncfLanes K[ANCF_TANGENT], PetscInt lane, PetscReal k[144])
+{
+  for (int b = 0; b < 3; b++)
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) k[12 * (3 * b + 3 + i) + 3 * b + 3 + j] = K[6 * b + sym_of[i][j]][lane];
+  for (int b = 0; b < 3; b++)
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        int r = 3 * off_row[b] + 3 + i, c = 3 * off_col[b] + 3 + j;
+        k[12 * r + c] = k[12 * c + r] = K[18 + 9 * b + 3 * i + j][lane];
+      }
+  for (int i = 0; i < 3; i++) {
+    for (int j = 3; j < 12; j++) k[12 * i + j] = k[12 * j + i] = -k[12 * (6 + i) + j];
+    for (int j = 0; j < 3; j++) k[12 * i + j] = k[12 * (6 + i) + 6 + j];
+  }
+}
+
+/* Integral of S_i S_j over the element with unit length and scaled gradients, times 420. */
+static const PetscReal mass_table[16] = {156, 22, 54, -13, 22, 4, 13, -3, 54, 13, 156, -22, -13, -3, -22, 4};
+
+void AncfElementInertia(AncfLanes rhoA, AncfLanes l, const AncfLanes a[12], AncfLanes Q[12])
+{
+  const AncfLanes s = rhoA * l / 420.0;
+
+  for (int c = 0; c < 3; c++) {
+    AncfLanes b[4] = {a[c], l * a[3 + c], a[6 + c], l * a[9 + c]};
+
+    for (int i = 0; i < 4; i++) {
+      AncfLanes f = s * (mass_table[4 * i] * b[0] + mass_table[4 * i + 1] * b[1] + mass_table[4 * i + 2] * b[2] +
+                         mass_table[4 * i + 3] * b[3]);
+
+      Q[3 * i + c] += i % 2 ? l * f : f;
+    }
+  }
+}
+
+void AncfElementMass(PetscReal rhoA, PetscReal l, PetscReal m[16])
+{
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) m[4 * i + j] = mass_table[4 * i + j] * rhoA * l / 420 * (i % 2 ? l : 1) * (j % 2 ? l : 1);
+}
+
+void AncfElementLoad(PetscReal l, PetscReal w[4])
+{
+  w[0] = w[2] = l / 2;
+  w[1] = l * l / 12;
+  w[3] = -w[1];
+}

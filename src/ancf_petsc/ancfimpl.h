@@ -1,0 +1,98 @@
+/* ancfimpl.h - private: the Ancf object and the functions shared by its source files. */
+#ifndef ANCFIMPL_H
+#define ANCFIMPL_H
+
+#include "ancfelement.h"
+
+/* How the equations of motion are handed to TS. */
+typedef enum {
+  ANCF_FORM_SECOND,    /* F(t,e,edot,eddot) = 0 */
+  ANCF_FORM_FIRST,     /* F(t,y,ydot) = 0, y = (e, v) interleaved node by node */
+  ANCF_FORM_EXPLICIT,  /* ydot = G(t,y), mass matrix factored once */
+  ANCF_FORM_SYMPLECTIC /* edot = v, vdot = a(e), split for TSBASICSYMPLECTIC */
+} AncfForm;
+
+enum { ANCF_FIX_POSITION = 1, ANCF_FIX_GRADIENT = 2 };
+
+typedef struct {
+  AncfBeamSpec spec;
+  PetscInt node, element;          /* first ones */
+  PetscReal l, EA, EI, rhoA, area; /* element length, m; section; outer area, m^2 */
+} AncfBeam;
+
+/* Up to ANCF_LANES consecutive elements; unused lanes repeat the last one. */
+typedef struct {
+  PetscInt n, node[ANCF_LANES];
+  PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
+} AncfBatch;
+
+struct _p_Ancf {
+  MPI_Comm comm;
+  char *prefix;
+  PetscInt nbeams, maxbeams, nnodes, nelements, nbatches;
+  AncfBeam *beams;
+  AncfBatch *batches;
+  AncfStrain strain;
+  PetscInt naxial, nbending, substeps;
+  AncfRule rule;
+  PetscReal gravity[3], fluiddensity;
+  PetscBool setup;
+  AncfForm form;
+
+  PetscReal t;
+  PetscReal *e, *v, *a; /* state, nodes x 6 */
+  PetscBool avalid;
+  PetscReal *load, *weight; /* Q^a, Q^g */
+  PetscReal *rest;          /* values of the eliminated coordinates */
+  unsigned char *fixed;     /* per node, ANCF_FIX_* */
+  PetscReal *mass;          /* banded Cholesky factor, 2 rows per node x 4 */
+
+  TS ts;
+  Vec U, V;
+  Mat J;
+  PetscReal *backup; /* state at the start of AncfAdvance(), 2 x nodes x 6 */
+  PetscReal step;    /* what an adaptive TS wants next, s; 0: unknown */
+};
+
+extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
+
+/* Gauss points per element: see docs/beams.md for the evidence. */
+#define ANCF_DEFAULT_AXIAL 5
+#define ANCF_DEFAULT_BENDING 4
+#define ANCF_DEFAULT_RADIUS 0.8
+
+#if defined(PETSC_UNLIMITED)
+  #define ANCF_UNLIMITED PETSC_UNLIMITED
+#else
+  #define ANCF_UNLIMITED (-1)
+#endif
+
+/* ancf.c */
+extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
+extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
+extern PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t);
+
+/* ancfts.c: Push and Pull copy the state into and out of the vectors of TS; Push makes TS restart. */
+extern PetscErrorCode AncfTSCreate(Ancf ancf);
+extern PetscErrorCode AncfTSDestroy(Ancf ancf);
+extern PetscErrorCode AncfTSSetUp(Ancf ancf);
+extern PetscErrorCode AncfTSPush(Ancf ancf);
+extern PetscErrorCode AncfTSPull(Ancf ancf);
+/* f = M a + Q^e(e) - Q^g - Q^a; a may be NULL. Arrays are nodes x 6 with the given strides between nodes. */
+extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f,
+                                   PetscInt fstride);
+
+extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
+
+/* ancfadvance.c */
+extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
+
+/* ancfmass.c */
+extern PetscErrorCode AncfMassFactor(Ancf ancf);
+extern PetscErrorCode AncfMassSolve(Ancf ancf, PetscReal *f, PetscInt stride);
+/* f = M x over all coordinates, constraints ignored. */
+extern PetscErrorCode AncfMassMult(Ancf ancf, const PetscReal *x, PetscReal *f);
+/* eddot from the equations of motion at the current state and loads. */
+extern PetscErrorCode AncfComputeAcceleration(Ancf ancf);
+
+#endif

@@ -1,0 +1,544 @@
+/*
+  ancfts.c - assembly of the equations of motion (Eqs. 28-30) and their TS callbacks.
+
+  Eliminated coordinates (Sect. 2.3) keep their rows, so that the block structure is regular: the beams see their
+  prescribed values whatever the solver proposes, and their rows read eddot = 0.
+*/
+#include "ancfimpl.h"
+
+/* Which form each TS type takes; anything else is refused. */
+static const struct {
+  const char *type;
+  AncfForm form;
+} ancf_types[] = {
+    {TSALPHA2, ANCF_FORM_SECOND},  {TSBEULER, ANCF_FORM_FIRST},
+    {TSCN, ANCF_FORM_FIRST},       {TSTHETA, ANCF_FORM_FIRST},
+    {TSBDF, ANCF_FORM_FIRST},      {TSALPHA, ANCF_FORM_FIRST},
+    {TSARKIMEX, ANCF_FORM_FIRST},  {"dirk", ANCF_FORM_FIRST},
+    {TSROSW, ANCF_FORM_FIRST},     {TSIRK, ANCF_FORM_FIRST},
+    {TSEULER, ANCF_FORM_EXPLICIT}, {TSRK, ANCF_FORM_EXPLICIT},
+    {TSSSP, ANCF_FORM_EXPLICIT},   {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC},
+};
+
+/* Coordinates x of a node as the beams see them: eliminated ones are replaced by fix (NULL: zero). */
+static inline void Gather(const Ancf ancf, const AncfBatch *b, const PetscReal *x, PetscInt stride, const PetscReal *fix,
+                          AncfLanes out[12])
+{
+  for (int i = 0; i < ANCF_LANES; i++) {
+    for (int side = 0; side < 2; side++) {
+      PetscInt j = b->node[i] + side;
+      const PetscReal *xj = x + j * stride;
+      unsigned char f = ancf->fixed[j];
+
+      for (int c = 0; c < 6; c++) out[6 * side + c][i] = xj[c];
+      if (PetscUnlikely(f)) {
+        for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++)
+          out[6 * side + c][i] = fix ? fix[6 * j + c] : 0;
+      }
+    }
+  }
+}
+
+static inline AncfLanes Load(const PetscReal x[ANCF_LANES])
+{
+  AncfLanes v;
+
+  for (int i = 0; i < ANCF_LANES; i++) v[i] = x[i];
+  return v;
+}
+
+static inline AncfSection BatchSection(const AncfBatch *b)
+{
+  return (AncfSection){Load(b->EA), Load(b->EI), Load(b->l)};
+}
+
+PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
+{
+  PetscReal w = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < ancf->nbatches; k++) {
+    const AncfBatch *b = &ancf->batches[k];
+    AncfSection s = BatchSection(b);
+    AncfLanes e[12], Q[12], U;
+
+    Gather(ancf, b, ancf->e, 6, ancf->rest, e);
+    AncfElementForce(&ancf->rule, &s, e, Q, &U);
+    for (PetscInt i = 0; i < b->n; i++) w += U[i];
+  }
+  *W = w;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f, PetscInt fstride)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -ancf->weight[6 * j + c] - ancf->load[6 * j + c];
+  for (PetscInt k = 0; k < ancf->nbatches; k++) {
+    const AncfBatch *b = &ancf->batches[k];
+    AncfSection s = BatchSection(b);
+    AncfLanes x[12], Q[12];
+
+    Gather(ancf, b, e, stride, ancf->rest, x);
+    AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+    if (a) {
+      Gather(ancf, b, a, stride, NULL, x);
+      AncfElementInertia(Load(b->rhoA), s.l, x, Q);
+    }
+    for (PetscInt i = 0; i < b->n; i++) {
+      PetscReal *fj = f + b->node[i] * fstride;
+
+      for (int c = 0; c < 6; c++) fj[c] += Q[c][i];
+      for (int c = 0; c < 6; c++) fj[fstride + c] += Q[6 + c][i];
+    }
+  }
+  PetscCall(PetscLogEventEnd(ANCF_Force, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of eliminated coordinates: f = x; x NULL: f = 0. */
+static void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
+{
+  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+    unsigned char fix = ancf->fixed[j];
+
+    for (int c = 0; c < 6; c++)
+      if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] : 0;
+  }
+}
+
+/* k = tangent + shift * mass of one element, 12 x 12 row-major, with rows and columns of eliminated coordinates cleared. */
+static inline void AncfElementMatrix(Ancf ancf, const AncfBatch *b, PetscInt lane, const AncfLanes K[ANCF_TANGENT],
+                                     PetscReal shift, PetscReal k[144])
+{
+  PetscReal m[16];
+
+  AncfTangentExpand(K, lane, k);
+  AncfElementMass(b->rhoA[lane], b->l[lane], m);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      for (int c = 0; c < 3; c++) k[12 * (3 * i + c) + 3 * j + c] += shift * m[4 * i + j];
+  for (int side = 0; side < 2; side++) {
+    unsigned char fix = ancf->fixed[b->node[lane] + side];
+
+    if (PetscLikely(!fix)) continue;
+    for (int c = 0; c < 6; c++) {
+      if (!(fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
+      for (int j = 0; j < 12; j++) k[12 * (6 * side + c) + j] = k[12 * j + 6 * side + c] = 0;
+    }
+  }
+}
+
+/*
+  Adds the element matrices to P, whose node blocks have 6 rows (second-order form) or 12 with the equations of motion in
+  the last 6 (first-order form): there the tangent takes the columns of e and the mass those of v.
+*/
+static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P)
+{
+  const PetscInt bs = ancf->form == ANCF_FORM_SECOND ? 6 : 12;
+  PetscReal k[144], m[144], blk[576];
+  AncfLanes zero[ANCF_TANGENT] = {{0}};
+
+  PetscFunctionBegin;
+  for (PetscInt n = 0; n < ancf->nbatches; n++) {
+    const AncfBatch *b = &ancf->batches[n];
+    AncfSection s = BatchSection(b);
+    AncfLanes x[12], Q[12], K[ANCF_TANGENT];
+
+    Gather(ancf, b, e, stride, ancf->rest, x);
+    AncfElementTangent(&ancf->rule, &s, x, Q, K);
+    for (PetscInt i = 0; i < b->n; i++) {
+      PetscInt idx[2] = {b->node[i], b->node[i] + 1};
+
+      if (bs == 6) {
+        AncfElementMatrix(ancf, b, i, K, shift, k);
+        PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, k, ADD_VALUES));
+        continue;
+      }
+      AncfElementMatrix(ancf, b, i, K, 0, k);
+      AncfElementMatrix(ancf, b, i, zero, shift, m);
+      PetscCall(PetscArrayzero(blk, 576));
+      for (int r = 0; r < 12; r++)
+        for (int c = 0; c < 12; c++) {
+          int row = 12 * (r / 6) + 6 + r % 6, col = 12 * (c / 6) + c % 6;
+
+          blk[24 * row + col] = k[12 * r + c];
+          blk[24 * row + col + 6] = m[12 * r + c];
+        }
+      PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, blk, ADD_VALUES));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
+static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
+{
+  const PetscInt bs = ancf->form == ANCF_FORM_SECOND ? 6 : 12;
+  PetscReal blk[144];
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+    if (bs == 6 && !ancf->fixed[j]) continue;
+    PetscCall(PetscArrayzero(blk, 144));
+    for (int c = 0; c < 6; c++) {
+      if (ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) blk[(bs + 1) * (bs - 6 + c)] = shift;
+      if (bs == 12) {
+        blk[13 * c] = shift;
+        blk[12 * c + 6 + c] = -1;
+      }
+    }
+    PetscCall(MatSetValuesBlocked(P, 1, &j, 1, &j, blk, ADD_VALUES));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat J, Mat P)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Tangent, 0, 0, 0, 0));
+  PetscCall(MatZeroEntries(P));
+  PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
+  PetscCall(AncfAssembleNodes(ancf, shift, P));
+  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
+  if (J != P) {
+    PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  }
+  PetscCall(PetscLogEventEnd(ANCF_Tangent, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = M a + Q^e - Q^g - Q^a */
+static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
+{
+  Ancf ancf = (Ancf)ctx;
+  const PetscScalar *u, *a;
+  PetscScalar *f;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)V;
+  PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(VecGetArrayRead(A, &a));
+  PetscCall(VecGetArrayWrite(F, &f));
+  PetscCall(AncfResidual(ancf, u, a, 6, f, 6));
+  AncfFixRows(ancf, a, 6, f, 6);
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscCall(VecRestoreArrayRead(A, &a));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shiftV, PetscReal shiftA, Mat J, Mat P,
+                                     void *ctx)
+{
+  const PetscScalar *u;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)V;
+  (void)A;
+  (void)shiftV;
+  PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, J, P));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = (edot - v, M vdot + Q^e - Q^g - Q^a), y = (e, v) node by node */
+static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, void *ctx)
+{
+  Ancf ancf = (Ancf)ctx;
+  const PetscScalar *y, *yd;
+  PetscScalar *f;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  PetscCall(VecGetArrayRead(Y, &y));
+  PetscCall(VecGetArrayRead(Ydot, &yd));
+  PetscCall(VecGetArrayWrite(F, &f));
+  PetscCall(AncfResidual(ancf, y, yd + 6, 12, f + 6, 12));
+  AncfFixRows(ancf, yd + 6, 12, f + 6, 12);
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 12 * j; c < 12 * j + 6; c++) f[c] = yd[c] - y[c + 6];
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscCall(VecRestoreArrayRead(Ydot, &yd));
+  PetscCall(VecRestoreArrayRead(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscReal shift, Mat J, Mat P, void *ctx)
+{
+  const PetscScalar *y;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)Ydot;
+  PetscCall(VecGetArrayRead(Y, &y));
+  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift, J, P));
+  PetscCall(VecRestoreArrayRead(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a = M^-1 (Q^g + Q^a - Q^e), coordinates and result with their own strides */
+static PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride)
+{
+  PetscFunctionBegin;
+  PetscCall(AncfResidual(ancf, e, NULL, stride, a, astride));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
+  AncfFixRows(ancf, NULL, 0, a, astride);
+  PetscCall(AncfMassSolve(ancf, a, astride));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfRHSFunction(TS ts, PetscReal t, Vec Y, Vec G, void *ctx)
+{
+  Ancf ancf = (Ancf)ctx;
+  const PetscScalar *y;
+  PetscScalar *g;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  PetscCall(VecGetArrayRead(Y, &y));
+  PetscCall(VecGetArrayWrite(G, &g));
+  PetscCall(AncfExplicitAcceleration(ancf, y, 12, g + 6, 12));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 12 * j; c < 12 * j + 6; c++) g[c] = y[c + 6];
+  PetscCall(VecRestoreArrayWrite(G, &g));
+  PetscCall(VecRestoreArrayRead(Y, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Halves of a separable Hamiltonian system; TSBASICSYMPLECTIC passes the other half's coordinates, nodes x 6. */
+static PetscErrorCode AncfSymplecticPosition(TS ts, PetscReal t, Vec V, Vec G, void *ctx)
+{
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)ctx;
+  PetscCall(VecCopy(V, G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfSymplecticMomentum(TS ts, PetscReal t, Vec X, Vec G, void *ctx)
+{
+  Ancf ancf = (Ancf)ctx;
+  const PetscScalar *x;
+  PetscScalar *g;
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(G, &g));
+  PetscCall(AncfExplicitAcceleration(ancf, x, 6, g, 6));
+  PetscCall(VecRestoreArrayWrite(G, &g));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Initial guess of the second-order form: positions at constant velocity. */
+static PetscErrorCode AncfPredict(SNES snes, Vec X, void *ctx)
+{
+  Ancf ancf = (Ancf)ctx;
+  PetscReal dt;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(TSGetTimeStep(ancf->ts, &dt));
+  PetscCall(VecAXPY(X, dt, ancf->V));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Defaults of the solver stack, all changeable by -ancf_ts_..., -ancf_snes_..., -ancf_ksp_..., -ancf_pc_.... */
+PetscErrorCode AncfTSCreate(Ancf ancf)
+{
+  TSAdapt adapt;
+  SNES snes;
+  KSP ksp;
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(TSCreate(ancf->comm, &ancf->ts));
+  PetscCall(TSSetType(ancf->ts, TSALPHA2));
+  PetscCall(TSAlpha2SetRadius(ancf->ts, ANCF_DEFAULT_RADIUS));
+  PetscCall(TSSetExactFinalTime(ancf->ts, TS_EXACTFINALTIME_MATCHSTEP));
+  PetscCall(TSSetMaxSteps(ancf->ts, PETSC_MAX_INT));
+  PetscCall(TSSetMaxSNESFailures(ancf->ts, ANCF_UNLIMITED)); /* a failed step is tried again with a smaller one, */
+  PetscCall(TSSetMaxStepRejections(ancf->ts, 10));           /* ten times */
+  PetscCall(TSSetErrorIfStepFails(ancf->ts, PETSC_FALSE));
+  PetscCall(TSGetAdapt(ancf->ts, &adapt));
+  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
+  PetscCall(TSGetSNES(ancf->ts, &snes));
+  PetscCall(SNESSetType(snes, SNESNEWTONLS));
+  PetscCall(SNESSetTolerances(snes, 1e-50, 1e-9, 1e-12, 25, 10000));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCILU)); /* level 0 of a block-tridiagonal matrix of full blocks: the exact block LU */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfTSDestroy(Ancf ancf)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(ancf->backup));
+  PetscCall(VecDestroy(&ancf->U));
+  PetscCall(VecDestroy(&ancf->V));
+  PetscCall(MatDestroy(&ancf->J));
+  PetscCall(TSDestroy(&ancf->ts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs)
+{
+  PetscInt n = bs * ancf->nnodes, *nnz;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(ancf->nnodes, &nnz));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeam *m = &ancf->beams[b];
+
+    for (PetscInt k = 0; k <= m->spec.elements; k++) nnz[m->node + k] = 3 - (k == 0) - (k == m->spec.elements);
+  }
+  PetscCall(MatCreate(ancf->comm, &ancf->J));
+  PetscCall(MatSetSizes(ancf->J, n, n, n, n));
+  PetscCall(MatSetBlockSize(ancf->J, bs));
+  PetscCall(MatSetType(ancf->J, MATSEQBAIJ));
+  PetscCall(MatSetOptionsPrefix(ancf->J, ancf->prefix));
+  PetscCall(MatAppendOptionsPrefix(ancf->J, "ancf_"));
+  PetscCall(MatSetFromOptions(ancf->J));
+  PetscCall(MatXAIJSetPreallocation(ancf->J, bs, nnz, NULL, NULL, NULL));
+  PetscCall(PetscFree(nnz));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfSetUpSymplectic(Ancf ancf)
+{
+  IS is;
+  PetscInt *idx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(ancf->nnodes, &idx));
+  for (PetscInt half = 0; half < 2; half++) {
+    const char *name = half ? "momentum" : "position";
+
+    for (PetscInt j = 0; j < ancf->nnodes; j++) idx[j] = 2 * j + half;
+    PetscCall(ISCreateBlock(ancf->comm, 6, ancf->nnodes, idx, PETSC_COPY_VALUES, &is));
+    PetscCall(TSRHSSplitSetIS(ancf->ts, name, is));
+    PetscCall(TSRHSSplitSetRHSFunction(ancf->ts, name, NULL, half ? AncfSymplecticMomentum : AncfSymplecticPosition, ancf));
+    PetscCall(ISDestroy(&is));
+  }
+  PetscCall(PetscFree(idx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfChooseForm(Ancf ancf)
+{
+  TSType type;
+  const size_t n = sizeof(ancf_types) / sizeof(ancf_types[0]);
+  size_t k;
+  char list[256] = "";
+
+  PetscFunctionBegin;
+  PetscCall(TSGetType(ancf->ts, &type));
+  for (k = 0; k < n; k++) {
+    PetscBool match;
+
+    PetscCall(PetscStrcmp(type, ancf_types[k].type, &match));
+    if (match) break;
+    PetscCall(PetscStrlcat(list, " ", sizeof(list)));
+    PetscCall(PetscStrlcat(list, ancf_types[k].type, sizeof(list)));
+  }
+  PetscCheck(k < n, ancf->comm, PETSC_ERR_ARG_WRONG, "-ancf_ts_type %s cannot integrate beams; use one of:%s", type, list);
+  ancf->form = ancf_types[k].form;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfTSSetUp(Ancf ancf)
+{
+  const PetscInt n = 6 * ancf->nnodes;
+  SNES snes;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(2 * n, &ancf->backup));
+  PetscCall(AncfChooseForm(ancf));
+  if (ancf->form == ANCF_FORM_SECOND) {
+    PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->e, &ancf->U));
+    PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->v, &ancf->V));
+    PetscCall(AncfCreateMatrix(ancf, 6));
+    PetscCall(TSSetI2Function(ancf->ts, NULL, AncfI2Function, ancf));
+    PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
+    PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
+    PetscCall(TSGetSNES(ancf->ts, &snes));
+    PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
+  } else {
+    PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
+    if (ancf->form == ANCF_FORM_FIRST) {
+      PetscCall(AncfCreateMatrix(ancf, 12));
+      PetscCall(TSSetEquationType(ancf->ts, TS_EQ_ODE_IMPLICIT));
+      PetscCall(TSSetIFunction(ancf->ts, NULL, AncfIFunction, ancf));
+      PetscCall(TSSetIJacobian(ancf->ts, ancf->J, ancf->J, AncfIJacobian, ancf));
+    } else {
+      PetscCall(TSSetEquationType(ancf->ts, TS_EQ_ODE_EXPLICIT));
+      PetscCall(TSSetRHSFunction(ancf->ts, NULL, AncfRHSFunction, ancf));
+      if (ancf->form == ANCF_FORM_SYMPLECTIC) PetscCall(AncfSetUpSymplectic(ancf));
+    }
+    PetscCall(TSSetSolution(ancf->ts, ancf->U));
+  }
+  PetscCall(AncfTSPush(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* State -> TS, whose history is discarded. */
+PetscErrorCode AncfTSPush(Ancf ancf)
+{
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  PetscCall(TSSetTime(ancf->ts, ancf->t));
+  PetscCall(TSRestartStep(ancf->ts));
+  if (ancf->form == ANCF_FORM_SECOND) { /* U and V wrap the state: only say that it changed */
+    PetscCall(VecGetArray(ancf->U, &y));
+    PetscCall(VecRestoreArray(ancf->U, &y));
+    PetscCall(VecGetArray(ancf->V, &y));
+    PetscCall(VecRestoreArray(ancf->V, &y));
+  } else {
+    PetscCall(VecGetArrayWrite(ancf->U, &y));
+    for (PetscInt j = 0; j < ancf->nnodes; j++)
+      for (PetscInt c = 0; c < 6; c++) {
+        y[12 * j + c] = ancf->e[6 * j + c];
+        y[12 * j + 6 + c] = ancf->v[6 * j + c];
+      }
+    PetscCall(VecRestoreArrayWrite(ancf->U, &y));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TS -> state. */
+PetscErrorCode AncfTSPull(Ancf ancf)
+{
+  PetscFunctionBegin;
+  if (ancf->form != ANCF_FORM_SECOND) {
+    const PetscScalar *y;
+
+    PetscCall(VecGetArrayRead(ancf->U, &y));
+    for (PetscInt j = 0; j < ancf->nnodes; j++)
+      for (PetscInt c = 0; c < 6; c++) {
+        ancf->e[6 * j + c] = y[12 * j + c];
+        ancf->v[6 * j + c] = y[12 * j + 6 + c];
+      }
+    PetscCall(VecRestoreArrayRead(ancf->U, &y));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
