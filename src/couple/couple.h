@@ -1,0 +1,81 @@
+/*
+  couple.h - public interface of the coupling: fluid markers against any number of structure surfaces.
+
+  Sect. 2.4 of Pazouki, Serban, Negrut. A CoupleSurface is all that the coupling knows of a structure: it gives BCE
+  markers and their motion, takes forces on them, and advances itself in time. Adapters: ANCF beams, rigid
+  bodies, walls with prescribed motion; a host code writes its own by filling CoupleSurfaceOps.
+*/
+#ifndef COUPLE_H
+#define COUPLE_H
+
+#include "ancf.h"
+#include "frondsys.h"
+#include "rigid.h"
+#include "sph.h"
+
+typedef struct _p_Couple        *Couple;
+typedef struct _p_CoupleSurface *CoupleSurface;
+
+/* What a transfer of marker forces lost: marker sums minus generalised sums. Moments about the origin. */
+typedef struct {
+  PetscReal force[3], moment[3], power;                /* totals over the markers: N, N m, W */
+  PetscReal force_lost[3], moment_lost[3], power_lost; /* marker total - what the structure received */
+  PetscReal twist;                                     /* axial torque that a gradient-deficient beam cannot carry, N m */
+} CoupleAudit;
+
+typedef struct {
+  /* n markers: rest positions x (n x 3), volumes (n), depths (n); borrowed from the surface. */
+  PetscErrorCode (*getmarkers)(CoupleSurface, PetscInt *n, const PetscReal **x, const PetscReal **volume, const PetscReal **depth);
+  /* Marker state extrapolated by dt from the structure's current time with its current velocity and acceleration: n x 3 each. */
+  PetscErrorCode (*kinematics)(CoupleSurface, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a);
+  /* Take the marker forces f (n x 3, N), held over the next advance; fill the audit. */
+  PetscErrorCode (*applyforces)(CoupleSurface, const PetscReal *f, CoupleAudit *audit);
+  /* Integrate to time t. Surfaces that share a solver share the call: the solver advances once. */
+  PetscErrorCode (*advance)(CoupleSurface, PetscReal t);
+  PetscErrorCode (*view)(CoupleSurface, PetscViewer);
+  PetscErrorCode (*destroy)(CoupleSurface);
+} CoupleSurfaceOps;
+
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx, CoupleSurface *surface);
+FROND_EXTERN PetscErrorCode CoupleSurfaceGetContext(CoupleSurface surface, void *ctx);
+FROND_EXTERN PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name);
+FROND_EXTERN PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface);
+
+/* Beam `beam` of ancf, marked by disks of BCE markers dp apart (lines across the thickness in 2D). */
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, PetscReal dp, PetscReal depthmax, CoupleSurface *surface);
+/* Body `body` of rigid. */
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax, CoupleSurface *surface);
+/* Markers moving together with a constant velocity (m/s), at rest for zero. Copies the arrays. */
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3], CoupleSurface *surface);
+
+FROND_EXTERN PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple);
+FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
+FROND_EXTERN PetscErrorCode CoupleSetAncf(Couple couple, Ancf ancf);
+FROND_EXTERN PetscErrorCode CoupleSetRigid(Couple couple, Rigid rigid);
+FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
+FROND_EXTERN PetscErrorCode CoupleSetFromOptions(Couple couple);
+/* Gives every surface's markers to the fluid and sets the fluid up. Add the fluid markers before. */
+FROND_EXTERN PetscErrorCode CoupleSetUp(Couple couple);
+FROND_EXTERN PetscErrorCode CoupleView(Couple couple, PetscViewer viewer);
+FROND_EXTERN PetscErrorCode CoupleDestroy(Couple *couple);
+
+/* One step of the coupled system, not past tmax; dt (s) is the step taken. */
+FROND_EXTERN PetscErrorCode CoupleStep(Couple couple, PetscReal tmax, PetscReal *dt);
+FROND_EXTERN PetscErrorCode CoupleGetTime(Couple couple, PetscReal *t, PetscInt *step);
+FROND_EXTERN PetscErrorCode CoupleGetNumSurfaces(Couple couple, PetscInt *n);
+FROND_EXTERN PetscErrorCode CoupleGetSurface(Couple couple, PetscInt i, CoupleSurface *surface, PetscInt *group);
+/* Audit of the last step's transfer on surface i. */
+FROND_EXTERN PetscErrorCode CoupleGetAudit(Couple couple, PetscInt i, CoupleAudit *audit);
+
+/*
+  Balance since set-up: impulses that went into the fluid and structures (kg m/s). residual = fluid momentum + structure momentum
+  - initial - impulse of body forces - impulse of supports, walls and prescribed bodies.
+*/
+typedef struct {
+  PetscReal fluid[3], structure[3];       /* momentum now, kg m/s */
+  PetscReal body[3], support[3], wall[3]; /* impulses since set-up, kg m/s */
+  PetscReal residual[3], scale;           /* residual, and the largest term it is a difference of */
+} CoupleBalance;
+FROND_EXTERN PetscErrorCode CoupleGetBalance(Couple couple, CoupleBalance *balance);
+
+#endif

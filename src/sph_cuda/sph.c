@@ -1,0 +1,306 @@
+/* sph.c - lifecycle, backend choice and stepping of the fluid; no physics. */
+#include "sphimpl.h"
+#include <math.h>
+
+PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output;
+
+static PetscErrorCode SphRegisterEvents(void)
+{
+  static PetscBool done = PETSC_FALSE;
+  PetscClassId     classid;
+
+  PetscFunctionBegin;
+  if (done) PetscFunctionReturn(PETSC_SUCCESS);
+  done = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("SPH fluid", &classid));
+  PetscCall(PetscLogEventRegister("SphBuild", classid, &SPH_Build));
+  PetscCall(PetscLogEventRegister("SphAuxiliary", classid, &SPH_Aux));
+  PetscCall(PetscLogEventRegister("SphRates", classid, &SPH_Rates));
+  PetscCall(PetscLogEventRegister("SphIntegrate", classid, &SPH_Integrate));
+  PetscCall(PetscLogEventRegister("SphReinit", classid, &SPH_Reinit));
+  PetscCall(PetscLogEventRegister("SphMotion", classid, &SPH_Motion));
+  PetscCall(PetscLogEventRegister("SphOutput", classid, &SPH_Output));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SphCreate - Create an empty fluid with the default parameters.
+
+  Source: defaults of Pazouki, Serban, Negrut, Sect. 2.1 where the paper gives them.
+@*/
+PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
+{
+  Sph         sph;
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCheck(size == 1, comm, PETSC_ERR_SUP, "the fluid runs on 1 MPI rank, the communicator has %d: use threads (OMP_NUM_THREADS) instead", (int)size);
+  PetscCall(SphRegisterEvents());
+  PetscCall(PetscNew(&sph));
+  sph->comm = comm;
+  PetscCall(PetscStrncpy(sph->type, SPHCPU, sizeof(sph->type)));
+  sph->par.dim = 3;
+  sph->par.rho0 = 1000.0;
+  sph->par.mu = 1e-3;
+  sph->par.gamma = 7.0;
+  sph->par.zeta = 0.5;
+  sph->par.epsilon = 0.01;
+  sph->par.viscositylattice = PETSC_TRUE;
+  sph->par.cfl = 0.25;
+  sph->par.dtfixed = PETSC_DECIDE;
+  sph->par.reinit = SPH_REINIT_SHEPARD;
+  sph->par.reinitevery = 10;
+  sph->par.checkevery = 10;
+  sph->par.wall = SPH_WALL_ADAMI;
+  sph->hratio = 1.2;
+  PetscCall(PetscMalloc1(1, &sph->groupstart));
+  sph->groupcap = 1;
+  sph->groupstart[0] = 0;
+  *newsph = sph;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FreeArrays(Sph sph)
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCall(PetscFree(sph->st.x[k]));
+    PetscCall(PetscFree(sph->st.v[k]));
+    PetscCall(PetscFree(sph->stn.x[k]));
+    PetscCall(PetscFree(sph->stn.v[k]));
+    PetscCall(PetscFree(sph->rate.a[k]));
+    PetscCall(PetscFree(sph->rate.dv[k]));
+    PetscCall(PetscFree(sph->ab[k]));
+  }
+  PetscCall(PetscFree(sph->st.s));
+  PetscCall(PetscFree(sph->stn.s));
+  PetscCall(PetscFree(sph->rate.ds));
+  PetscCall(PetscFree(sph->m));
+  PetscCall(PetscFree(sph->wallratio));
+  PetscCall(PetscFree(sph->group));
+  PetscCall(PetscFree(sph->id));
+  PetscCall(PetscFree(sph->slot));
+  PetscCall(PetscFree(sph->groupstart));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphDestroy(Sph *sph)
+{
+  PetscFunctionBegin;
+  if (!*sph) PetscFunctionReturn(PETSC_SUCCESS);
+  if ((*sph)->ops) PetscCall((*(*sph)->ops->destroy)(*sph));
+  PetscCall(FreeArrays(*sph));
+  PetscCall(PetscFree(*sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The one table of backends. */
+static PetscErrorCode ChooseBackend(Sph sph)
+{
+  PetscBool cpu, cuda, any;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(sph->type, SPHCPU, &cpu));
+  PetscCall(PetscStrcmp(sph->type, SPHCUDA, &cuda));
+  PetscCall(PetscStrcmp(sph->type, SPHAUTO, &any));
+  PetscCheck(cpu || cuda || any, sph->comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "sph_type = %s: must be cpu, cuda or auto", sph->type);
+#if defined(FROND_HAVE_CUDA)
+  if (cuda || any) {
+    PetscBool have;
+    PetscCall(SphCudaAvailable(&have));
+    PetscCheck(have || any, sph->comm, PETSC_ERR_SUP_SYS, "sph_type = cuda: no CUDA device was found; use cpu or auto");
+    if (have) {
+      sph->ops = &SphOps_CUDA;
+      PetscCall(PetscStrncpy(sph->type, SPHCUDA, sizeof(sph->type)));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
+#else
+  PetscCheck(!cuda, sph->comm, PETSC_ERR_SUP, "sph_type = cuda: this build has no CUDA backend; use cpu or auto");
+#endif
+  if (any) PetscCall(PetscPrintf(sph->comm, "sph_type auto: no CUDA device, using the CPU backend\n"));
+  sph->ops = &SphOps_CPU;
+  PetscCall(PetscStrncpy(sph->type, SPHCPU, sizeof(sph->type)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckParameters(Sph sph)
+{
+  SphParams *p = &sph->par;
+
+  PetscFunctionBegin;
+  PetscCheck(p->dp > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dp = %g: the marker spacing must be given and > 0 (m)", (double)p->dp);
+  if (!sph->hset) p->h = sph->hratio * p->dp;
+  PetscCheck(p->h >= p->dp * (1.0 - 1e-12), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_h = %g is %g sph_dp: must be at least 1 sph_dp, or the kernel sees too few neighbours", (double)p->h, (double)(p->h / p->dp));
+  PetscCheck(p->h <= p->dp * 4.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_h = %g is %g sph_dp: must be at most 4 sph_dp", (double)p->h, (double)(p->h / p->dp));
+  PetscCheck(sph->csset || sph->vmaxset, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "sph_max_speed: the expected maximum speed (m/s, > 0) must be given, or sph_sound_speed");
+  if (!sph->csset) p->cs = 10.0 * p->vmax;
+  if (!sph->vmaxset) p->vmax = 0.1 * p->cs;
+  p->mupair = p->viscositylattice ? p->mu / SphViscosityLattice(p) : p->mu;
+  p->B = p->cs * p->cs * p->rho0 / p->gamma;
+  PetscCheck(sph->domainset, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "domain_lo, domain_hi: the domain must be given");
+  for (int k = 0; k < p->dim; k++) {
+    PetscCheck(p->hi[k] > p->lo[k], sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "domain_hi[%d] = %g: must be > domain_lo[%d] = %g", k, (double)p->hi[k], k, (double)p->lo[k]);
+    PetscCheck(!p->periodic[k] || p->hi[k] - p->lo[k] >= 2.0 * p->h * 1.05, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "domain_hi[%d] - domain_lo[%d] = %g: a periodic side must be at least 2.1 sph_h = %g m long", k, k, (double)(p->hi[k] - p->lo[k]), (double)(2.1 * p->h));
+  }
+  PetscCheck(sph->nfluid > 0, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "the domain holds no fluid: no fluid marker was added");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SphSetUp - Check the parameters, choose the backend, sort the markers and evaluate the first right-hand side.
+
+  Errors: a parameter out of range, no fluid, markers closer than 0.1 dp, no device.
+@*/
+PetscErrorCode SphSetUp(Sph sph)
+{
+  PetscFunctionBegin;
+  if (sph->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckParameters(sph));
+  PetscCall(ChooseBackend(sph));
+  for (PetscInt i = 0; i < sph->n; i++) {
+    if (sph->group[i] == -1) { /* SphAddFluid left the pressure here, and the volume in m */
+      PetscCheck(sph->st.s[i] > -0.5 * sph->par.B, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "initial pressure %g Pa of marker %" PetscInt_FMT ": must be > %g Pa for this sound speed", sph->st.s[i], i, (double)(-0.5 * sph->par.B));
+      sph->st.s[i] = expm1(log1p(sph->st.s[i] / sph->par.B) / sph->par.gamma);
+      sph->m[i] = sph->par.rho0 * pow(sph->par.dp, (double)sph->par.dim);
+    } else {
+      sph->m[i] *= sph->par.rho0;
+      sph->wallratio[i] = SphWallRatio(&sph->par, sph->wallratio[i]);
+    }
+  }
+  PetscCall((*sph->ops->setup)(sph));
+  sph->setup = PETSC_TRUE;
+  PetscCall((*sph->ops->build)(sph));
+  PetscCall((*sph->ops->rates)(sph));
+  sph->evaluations = 0.0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
+{
+  const PetscReal dt = sph->par.dtfixed;
+
+  PetscFunctionBegin;
+  if (dt <= limit * (1.0 + 1e-9)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(sph->step > 0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dt = %g s: must be at most the stable step %g s (%s limit, sph_cfl = %g)", (double)dt, (double)limit, which, (double)sph->par.cfl);
+  if (!sph->fixedwarned) {
+    sph->fixedwarned = PETSC_TRUE;
+    PetscCall(PetscFPrintf(sph->comm, PETSC_STDERR, "frond: warning: sph_dt = %g s exceeds the stable step %g s (%s limit) at step %" PetscInt_FMT "\n", (double)dt, (double)limit, which, sph->step));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SphComputeTimeStep - Stable step from the acoustic, force and viscous limits, or the fixed one.
+
+  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21.
+  Errors: a fixed step above the limit at the first step; later it is a warning, once.
+@*/
+PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
+{
+  const SphParams *p = &sph->par;
+  PetscReal        vmax, amax, limit;
+  const char      *which = "acoustic";
+
+  PetscFunctionBegin;
+  PetscCall((*sph->ops->limits)(sph, &vmax, &amax));
+  limit = p->cfl * p->h / (p->cs + vmax);
+  if (amax > 0.0 && p->cfl * PetscSqrtReal(p->h / amax) < limit) {
+    limit = p->cfl * PetscSqrtReal(p->h / amax);
+    which = "force";
+  }
+  if (p->mu > 0.0 && p->cfl * 0.5 * p->h * p->h * p->rho0 / p->mu < limit) {
+    limit = p->cfl * 0.5 * p->h * p->h * p->rho0 / p->mu;
+    which = "viscous";
+  }
+  PetscCheck(PetscIsNormalReal(limit), sph->comm, PETSC_ERR_FP, "non-finite velocity or acceleration at step %" PetscInt_FMT ", time %g s: the stable step is %g s", sph->step, (double)sph->t, (double)limit);
+  *dt = limit;
+  if (p->dtfixed > 0.0) {
+    PetscCall(FixedTimeStep(sph, limit, which));
+    *dt = p->dtfixed;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateRates(Sph sph)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Build, 0, 0, 0, 0));
+  if (!sph->insidestep) PetscCall((*sph->ops->build)(sph));
+  PetscCall(PetscLogEventEnd(SPH_Build, 0, 0, 0, 0));
+  PetscCall((*sph->ops->rates)(sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SphStepBegin - First midpoint stage: rates at t, state at t + dt/2. Set the boundary motion at t + dt/2 next.
+@*/
+PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
+{
+  PetscFunctionBegin;
+  PetscCheck(!sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepBegin() was called twice without SphStepEnd()");
+  PetscCheck(dt > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the time step %g s must be > 0", (double)dt);
+  PetscCall(EvaluateRates(sph));
+  PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
+  PetscCall((*sph->ops->halfstep)(sph, dt));
+  PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
+  sph->dt = dt;
+  sph->insidestep = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SphStepEnd - Second midpoint stage: rates and boundary forces at t + dt/2, fluid state at t + dt.
+
+  Errors: PETSC_ERR_FP naming field, marker, step and time when a value is not finite (every -sph_check_every steps).
+@*/
+PetscErrorCode SphStepEnd(Sph sph)
+{
+  PetscFunctionBegin;
+  PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEnd() was called without SphStepBegin()");
+  PetscCall(EvaluateRates(sph));
+  PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
+  PetscCall((*sph->ops->fullstep)(sph, sph->dt));
+  PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
+  sph->insidestep = PETSC_FALSE;
+  sph->t += sph->dt;
+  sph->step++;
+  if (sph->par.reinit != SPH_REINIT_NONE && sph->step % sph->par.reinitevery == 0) {
+    PetscCall(PetscLogEventBegin(SPH_Reinit, 0, 0, 0, 0));
+    PetscCall((*sph->ops->build)(sph));
+    PetscCall((*sph->ops->reinit)(sph));
+    PetscCall(PetscLogEventEnd(SPH_Reinit, 0, 0, 0, 0));
+  }
+  if (sph->step % sph->par.checkevery == 0) {
+    PetscCall((*sph->ops->pull)(sph));
+    PetscCall(SphCheckFinite(sph));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
+{
+  PetscFunctionBegin;
+  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCall(PetscLogEventBegin(SPH_Motion, 0, 0, 0, 0));
+  PetscCall((*sph->ops->motion)(sph, group, x, v, a));
+  PetscCall(PetscLogEventEnd(SPH_Motion, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphGetBoundaryForce(Sph sph, PetscInt group, PetscReal *f)
+{
+  PetscFunctionBegin;
+  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCall((*sph->ops->force)(sph, group, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step)
+{
+  PetscFunctionBegin;
+  if (t) *t = sph->t;
+  if (step) *step = sph->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

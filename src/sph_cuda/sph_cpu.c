@@ -1,0 +1,255 @@
+/*
+  sph_cpu.c - the CPU backend: when to rebuild the search structure, the sweeps of one right-hand side, the RK2 stages.
+
+  Time integration: explicit midpoint (the paper's second-order Runge-Kutta). Positions and densities move with the XSPH
+  velocity, Eq. 10, velocities with Eq. 5.
+*/
+#include "sph_cpu.h"
+#include <math.h>
+#include <omp.h>
+
+/* Cells are 5 % larger than the support, so that they serve until a marker has moved half of that. */
+#define SPH_SKIN 0.05
+
+static PetscErrorCode SetUp_CPU(Sph sph)
+{
+  SphCpu *cpu;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&cpu));
+  cpu->skin = SPH_SKIN;
+  cpu->threads = omp_get_max_threads();
+  sph->data = cpu;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_CPU(Sph sph)
+{
+  SphCpu *cpu = (SphCpu *)sph->data;
+
+  PetscFunctionBegin;
+  if (!cpu) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 3; k++) PetscCall(PetscFree(cpu->xref[k]));
+  PetscCall(PetscFree(cpu->cellstart));
+  PetscCall(PetscFree(cpu->q));
+  PetscCall(PetscFree(cpu->tiles));
+  PetscCall(PetscFree(sph->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest squared displacement since the last build, m^2; HUGE when there is none. Non-finite positions count as far. */
+static double MaxMove2(Sph sph, const SphCpu *cpu)
+{
+  double m = 0.0;
+  if (!cpu->built) return HUGE_VAL;
+#pragma omp parallel for schedule(static) reduction(max : m)
+  for (PetscInt i = 0; i < sph->n; i++) {
+    double r2 = 0.0;
+    for (int k = 0; k < sph->par.dim; k++) {
+      double d = sph->st.x[k][i] - cpu->xref[k][i];
+      if (cpu->grid.periodic[k]) d -= cpu->grid.length[k] * rint(d / cpu->grid.length[k]);
+      r2 += d * d;
+    }
+    if (sph->group[i] != -2 && !(r2 <= m)) m = isnan(r2) ? HUGE_VAL : r2;
+  }
+  return m;
+}
+
+/* Fluid markers beyond the walls' outer side or an open side are frozen, taken out of all sums and counted. */
+static void TakeOutLeft(Sph sph)
+{
+  const SphParams *p = &sph->par;
+  const double     margin = 2.0 * p->h + p->dp;
+  PetscInt         left = 0;
+#pragma omp parallel for schedule(static) reduction(+ : left)
+  for (PetscInt i = 0; i < sph->n; i++) {
+    if (sph->group[i] != -1) continue;
+    for (int k = 0; k < p->dim; k++) {
+      if (p->periodic[k]) continue;
+      if (sph->st.x[k][i] < p->lo[k] - margin || sph->st.x[k][i] > p->hi[k] + margin) {
+        sph->group[i] = -2;
+        for (int d = 0; d < 3; d++) sph->st.v[d][i] = sph->rate.a[d][i] = sph->rate.dv[d][i] = 0.0;
+        sph->rate.ds[i] = 0.0;
+        left++;
+        break;
+      }
+    }
+  }
+  sph->left += left;
+}
+
+/* Room for the prepared quantities and for each thread's tile. */
+static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
+{
+  const size_t   real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
+  const PetscInt ncell = (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2];
+  PetscInt       most = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < ncell; c++) most = PetscMax(most, cpu->cellstart[2 * c + 2] - cpu->cellstart[2 * c]);
+  most = (most * (sph->par.dim == 3 ? 27 : 9) + 31) / 16 * 16;
+  if (most > cpu->tilecap) {
+    cpu->tilecap = most + most / 4;
+    cpu->tilecap -= cpu->tilecap % 16;
+    cpu->tilebytes = (size_t)cpu->tilecap * (SPH_NQ * real + sizeof(int)) + 64;
+    PetscCall(PetscFree(cpu->tiles));
+    PetscCall(PetscMalloc(cpu->tilebytes * (size_t)cpu->threads, &cpu->tiles));
+  }
+  if (!cpu->q) {
+    cpu->stride = (sph->n + 31) / 16 * 16;
+    PetscCall(PetscMalloc((size_t)cpu->stride * SPH_NQ * real, &cpu->q));
+    for (int k = 0; k < 3; k++) PetscCall(PetscCalloc1(sph->n, &cpu->xref[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Build_CPU(Sph sph)
+{
+  SphCpu      *cpu = (SphCpu *)sph->data;
+  const double allowed = 0.5 * cpu->skin * 2.0 * sph->par.h * 0.5; /* half: the other half is for the motion within the step */
+
+  PetscFunctionBegin;
+  if (MaxMove2(sph, cpu) <= allowed * allowed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (cpu->built) PetscCall(SphCheckFinite(sph));
+  TakeOutLeft(sph);
+  PetscCall(SphGridSetUp(sph, cpu->skin, &cpu->grid));
+  PetscCall(SphSortMarkers(sph, &cpu->grid, &cpu->cellstart, &cpu->cellcap));
+  PetscCall(SizeBuffers(sph, cpu));
+  for (int k = 0; k < 3; k++) PetscCall(PetscArraycpy(cpu->xref[k], sph->st.x[k], sph->n));
+  if (!cpu->built) PetscCall(SphCheckOverlap(sph, &cpu->grid, cpu->cellstart));
+  cpu->built = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Sweep(Sph sph, SphSweep sweep)
+{
+  PetscFunctionBegin;
+  if (sph->par.precision == SPH_PRECISION_SINGLE) PetscCall(SphCpuSweep_single(sph, sweep));
+  else PetscCall(SphCpuSweep_double(sph, sweep));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Rates_CPU(Sph sph)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Aux, 0, 0, 0, 0));
+  if (sph->par.zeta > 0.0 || sph->par.wall == SPH_WALL_ADAMI) PetscCall(Sweep(sph, SPH_SWEEP_AUX));
+  PetscCall(PetscLogEventEnd(SPH_Aux, 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(SPH_Rates, 0, 0, 0, 0));
+  PetscCall(Sweep(sph, SPH_SWEEP_RATES));
+  PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
+  sph->evaluations += (PetscReal)(sph->n - sph->left);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* state := base + dt * rates, for fluid; boundaries keep their motion, and their density unless it is evolved. */
+static void Move(Sph sph, const SphState *base, PetscReal dt)
+{
+  const SphParams *p = &sph->par;
+  const int        evolve = p->wall == SPH_WALL_BCE;
+#pragma omp parallel for schedule(static)
+  for (PetscInt i = 0; i < sph->n; i++) {
+    if (sph->group[i] == -1) {
+      for (int k = 0; k < p->dim; k++) {
+        sph->st.x[k][i] = base->x[k][i] + dt * (sph->st.v[k][i] + sph->rate.dv[k][i]);
+        sph->st.v[k][i] = base->v[k][i] + dt * (sph->rate.a[k][i] + p->f[k]);
+      }
+      sph->st.s[i] = base->s[i] + dt * sph->rate.ds[i];
+    } else if (evolve && sph->group[i] >= 0) sph->st.s[i] = base->s[i] + dt * sph->rate.ds[i];
+  }
+}
+
+static PetscErrorCode HalfStep_CPU(Sph sph, PetscReal dt)
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCall(PetscArraycpy(sph->stn.x[k], sph->st.x[k], sph->n));
+    PetscCall(PetscArraycpy(sph->stn.v[k], sph->st.v[k], sph->n));
+  }
+  PetscCall(PetscArraycpy(sph->stn.s, sph->st.s, sph->n));
+  Move(sph, &sph->stn, 0.5 * dt);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FullStep_CPU(Sph sph, PetscReal dt)
+{
+  PetscFunctionBegin;
+  Move(sph, &sph->stn, dt);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Reinit_CPU(Sph sph)
+{
+  PetscFunctionBegin;
+  PetscCall(Sweep(sph, SPH_SWEEP_SUM));
+#pragma omp parallel for schedule(static)
+  for (PetscInt i = 0; i < sph->n; i++)
+    if (sph->group[i] == -1) sph->st.s[i] = sph->rate.ds[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Motion_CPU(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
+{
+  const PetscInt first = sph->groupstart[group], last = sph->groupstart[group + 1];
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static)
+  for (PetscInt id = first; id < last; id++) {
+    const int      i = sph->slot[id];
+    const PetscInt o = 3 * (id - first);
+    for (int k = 0; k < sph->par.dim; k++) {
+      sph->st.x[k][i] = x[o + k];
+      sph->st.v[k][i] = v[o + k];
+      sph->ab[k][i] = a ? a[o + k] : 0.0;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Force_CPU(Sph sph, PetscInt group, PetscReal *f)
+{
+  const PetscInt first = sph->groupstart[group], last = sph->groupstart[group + 1];
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static)
+  for (PetscInt id = first; id < last; id++) {
+    const int i = sph->slot[id];
+    for (int k = 0; k < 3; k++) f[3 * (id - first) + k] = sph->m[i] * sph->rate.a[k][i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Limits_CPU(Sph sph, PetscReal *vmax, PetscReal *amax)
+{
+  double v2 = 0.0, a2 = 0.0;
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static) reduction(max : v2, a2)
+  for (PetscInt i = 0; i < sph->n; i++) {
+    double v = 0.0, a = 0.0;
+    for (int k = 0; k < sph->par.dim; k++) {
+      const double f = sph->group[i] == -1 ? sph->rate.a[k][i] + sph->par.f[k] : 0.0;
+      v += sph->st.v[k][i] * sph->st.v[k][i];
+      a += f * f;
+    }
+    v2 = PetscMax(v2, v);
+    a2 = PetscMax(a2, a);
+  }
+  *vmax = sqrt(v2);
+  *amax = sqrt(a2);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Pull_CPU(Sph sph)
+{
+  (void)sph;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Push_CPU(Sph sph)
+{
+  ((SphCpu *)sph->data)->built = PETSC_FALSE;
+  return PETSC_SUCCESS;
+}
+
+const SphOps SphOps_CPU = {SetUp_CPU, Build_CPU, Rates_CPU, HalfStep_CPU, FullStep_CPU, Reinit_CPU, Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU, Push_CPU, Destroy_CPU};

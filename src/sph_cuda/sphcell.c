@@ -1,0 +1,159 @@
+/* sphcell.c - cell grid, stable counting sort of the markers by cell, check for coincident markers. */
+#include "sphimpl.h"
+#include <math.h>
+
+/* No side of the grid may need more cells than this; a stray marker is taken out long before. */
+#define SPH_MAXCELLS 200000000.0
+
+/* Extent that the markers may use along an open axis: the domain and the wall layers around it. */
+static void OpenExtent(Sph sph, int k, double *lo, double *hi)
+{
+  double a = PETSC_MAX_REAL, b = PETSC_MIN_REAL;
+  for (PetscInt i = 0; i < sph->n; i++) {
+    if (sph->group[i] == -2) continue;
+    a = PetscMin(a, sph->st.x[k][i]);
+    b = PetscMax(b, sph->st.x[k][i]);
+  }
+  *lo = a;
+  *hi = b;
+}
+
+PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *g)
+{
+  const SphParams *p = &sph->par;
+  const double     want = 2.0 * p->h * (1.0 + skin);
+  double           cells = 1.0;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    g->periodic[k] = k < p->dim && p->periodic[k] ? 1 : 0;
+    g->length[k] = 0.0;
+    if (k >= p->dim) {
+      g->lo[k] = -0.5;
+      g->edge[k] = 1.0;
+      g->n[k] = 1;
+    } else if (g->periodic[k]) {
+      g->length[k] = p->hi[k] - p->lo[k];
+      g->lo[k] = p->lo[k];
+      g->n[k] = PetscMax(1, (int)floor(g->length[k] / want));
+      g->edge[k] = g->length[k] / g->n[k];
+    } else {
+      double lo, hi;
+      OpenExtent(sph, k, &lo, &hi);
+      PetscCheck((hi - lo) / want < 1e6, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the markers spread over %g m along axis %c, more than 10^6 cells of %g m", hi - lo, 'x' + k, want);
+      g->lo[k] = lo - 0.5 * want;
+      g->n[k] = (int)floor((hi - lo) / want) + 2;
+      g->edge[k] = want;
+    }
+    cells *= g->n[k];
+  }
+  PetscCheck(cells < SPH_MAXCELLS, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the domain needs %g search cells, more than %g", cells, SPH_MAXCELLS);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline int SortKey(Sph sph, const SphGrid *g, PetscInt i)
+{
+  if (sph->group[i] == -2) return 2 * g->n[0] * g->n[1] * g->n[2];
+  const int cx = sph_cell_coord(g, 0, sph->st.x[0][i]);
+  const int cy = sph_cell_coord(g, 1, sph->st.x[1][i]);
+  const int cz = sph->par.dim == 3 ? sph_cell_coord(g, 2, sph->st.x[2][i]) : 0;
+  return 2 * sph_cell_index(g, cx, cy, cz) + (sph->group[i] >= 0 ? 1 : 0);
+}
+
+static void PermuteDouble(double **array, double **spare, const int *from, PetscInt n)
+{
+  double *src = *array, *dst = *spare;
+#pragma omp parallel for schedule(static)
+  for (PetscInt i = 0; i < n; i++) dst[i] = src[from[i]];
+  *array = dst;
+  *spare = src;
+}
+
+static void PermuteInt(int *array, int *work, const int *from, PetscInt n)
+{
+  for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];
+  for (PetscInt i = 0; i < n; i++) array[i] = work[i];
+}
+
+/* from[new slot] = old slot; the order within a key is kept. cellstart gets nkeys+1 offsets. */
+static void CountingSort(PetscInt n, const int *key, PetscInt nkeys, int *cellstart, int *from)
+{
+  for (PetscInt k = 0; k <= nkeys; k++) cellstart[k] = 0;
+  for (PetscInt i = 0; i < n; i++) cellstart[key[i] + 1]++;
+  for (PetscInt k = 0; k < nkeys; k++) cellstart[k + 1] += cellstart[k];
+  for (PetscInt i = 0; i < n; i++) from[cellstart[key[i]]++] = (int)i;
+  for (PetscInt k = nkeys; k > 0; k--) cellstart[k] = cellstart[k - 1];
+  cellstart[0] = 0;
+}
+
+PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscInt *cellcap)
+{
+  const PetscInt n = sph->n, nkeys = 2 * (PetscInt)g->n[0] * g->n[1] * g->n[2] + 1;
+  int           *key, *from;
+  double        *spare;
+  double       **arrays[] = {&sph->st.x[0],  &sph->st.x[1],   &sph->st.x[2],   &sph->st.v[0],   &sph->st.v[1],   &sph->st.v[2], &sph->st.s, &sph->m,     &sph->wallratio,
+                             &sph->rate.a[0], &sph->rate.a[1], &sph->rate.a[2], &sph->rate.dv[0], &sph->rate.dv[1], &sph->rate.dv[2], &sph->rate.ds, &sph->ab[0], &sph->ab[1], &sph->ab[2]};
+
+  PetscFunctionBegin;
+  if (nkeys + 1 > *cellcap) {
+    PetscCall(PetscFree(*cellstart));
+    *cellcap = nkeys + 1 + nkeys / 8;
+    PetscCall(PetscMalloc1(*cellcap, cellstart));
+  }
+  PetscCall(PetscMalloc2(n, &key, n, &from));
+#pragma omp parallel for schedule(static)
+  for (PetscInt i = 0; i < n; i++) {
+    for (int k = 0; k < sph->par.dim; k++) { /* wrap fluid and boundary markers into the period */
+      if (g->periodic[k]) sph->st.x[k][i] -= g->length[k] * floor((sph->st.x[k][i] - g->lo[k]) / g->length[k]);
+    }
+    key[i] = SortKey(sph, g, i);
+  }
+  CountingSort(n, key, nkeys, *cellstart, from);
+  PetscCall(PetscMalloc1(n, &spare));
+  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) PermuteDouble(arrays[k], &spare, from, n);
+  PetscCall(PetscFree(spare));
+  PermuteInt(sph->group, key, from, n);
+  PermuteInt(sph->id, key, from, n);
+  for (PetscInt i = 0; i < n; i++) sph->slot[sph->id[i]] = (int)i;
+  PetscCall(PetscFree2(key, from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckPair(Sph sph, const SphGrid *g, PetscInt i, PetscInt j, double tol)
+{
+  double r2 = 0.0;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < sph->par.dim; k++) {
+    double d = sph->st.x[k][i] - sph->st.x[k][j];
+    if (g->periodic[k]) d -= g->length[k] * rint(d / g->length[k]);
+    r2 += d * d;
+  }
+  if (r2 < tol * tol) {
+    const PetscInt a = PetscMin(sph->id[i], sph->id[j]), b = PetscMax(sph->id[i], sph->id[j]);
+    SETERRQ(sph->comm, PETSC_ERR_ARG_WRONG, "markers %" PetscInt_FMT " and %" PetscInt_FMT " lie on top of one another at (%g, %g, %g): their distance %.3g m must be at least 0.1 sph_dp = %.3g m", a, b, sph->st.x[0][i],
+            sph->st.x[1][i], sph->st.x[2][i], sqrt(r2), tol);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *g, const int *cellstart)
+{
+  const double tol = 0.1 * sph->par.dp;
+
+  PetscFunctionBegin;
+  for (int cz = 0; cz < g->n[2]; cz++)
+    for (int cy = 0; cy < g->n[1]; cy++)
+      for (int cx = 0; cx < g->n[0]; cx++) {
+        const int c = sph_cell_index(g, cx, cy, cz);
+        for (int o = 0; o < 27; o++) {
+          const int nx = sph_cell_neighbour(g, 0, cx, o % 3 - 1), ny = sph_cell_neighbour(g, 1, cy, o / 3 % 3 - 1), nz = sph_cell_neighbour(g, 2, cz, o / 9 - 1);
+          if (nx < 0 || ny < 0 || nz < 0) continue;
+          const int d = sph_cell_index(g, nx, ny, nz);
+          for (int i = cellstart[2 * c]; i < cellstart[2 * c + 2]; i++)
+            for (int j = cellstart[2 * d]; j < cellstart[2 * d + 2]; j++)
+              if (i < j) PetscCall(CheckPair(sph, g, i, j, tol));
+        }
+      }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

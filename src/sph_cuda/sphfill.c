@@ -1,0 +1,89 @@
+/* sphfill.c - initial lattices. A site belongs to the first of wall, body and fluid that claims it: walls lie outside the box, `keep` carves bodies out. */
+#include "sphfill.h"
+#include <math.h>
+
+/* Nobody fills more sites than this by mistake. */
+#define SPH_MAXSITES 7.0e8
+
+static PetscErrorCode SitesPerAxis(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], PetscInt n[3])
+{
+  double total = 1.0;
+
+  PetscFunctionBegin;
+  PetscCheck(dp > 0.0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "sph_dp = %g: must be > 0 (m)", (double)dp);
+  for (int k = 0; k < 3; k++) {
+    const double sites = k < dim ? floor((hi[k] - lo[k]) / dp + 0.5 * (1.0 + 1e-9)) : 1.0;
+    n[k] = 0;
+    total *= PetscMax(sites, 0.0);
+    PetscCheck(total < SPH_MAXSITES, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "the box (%g, %g, %g) to (%g, %g, %g) m holds more than %g lattice sites of sph_dp = %g m: use a larger sph_dp or a smaller box", (double)lo[0], (double)lo[1], (double)lo[2], (double)hi[0], (double)hi[1],
+               (double)hi[2], SPH_MAXSITES, (double)dp);
+    n[k] = (PetscInt)PetscMax(sites, 0.0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphFillBox(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], SphFillKeep keep, void *ctx, PetscInt *count, PetscReal **xout)
+{
+  PetscInt   n[3], m = 0;
+  PetscReal *x;
+
+  PetscFunctionBegin;
+  PetscCall(SitesPerAxis(dim, dp, lo, hi, n));
+  PetscCall(PetscMalloc1(3 * PetscMax(1, n[0] * n[1] * n[2]), &x));
+  for (PetscInt k = 0; k < n[2]; k++)
+    for (PetscInt j = 0; j < n[1]; j++)
+      for (PetscInt i = 0; i < n[0]; i++) {
+        const PetscReal s[3] = {lo[0] + ((PetscReal)i + 0.5) * dp, lo[1] + ((PetscReal)j + 0.5) * dp, dim == 3 ? lo[2] + ((PetscReal)k + 0.5) * dp : 0.0};
+        if (keep && !keep(s, ctx)) continue;
+        for (int d = 0; d < 3; d++) x[3 * m + d] = s[d];
+        m++;
+      }
+  *count = m;
+  *xout = x;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Depth of lattice index i below the faces of an axis with n sites: 0 inside, < 0 where no face is flagged. */
+static PetscReal DepthBelow(PetscInt i, PetscInt n, PetscReal dp, PetscBool low, PetscBool high)
+{
+  if (i < 0) return low ? ((PetscReal)(-i) - 0.5) * dp : -1.0;
+  if (i >= n) return high ? ((PetscReal)(i - n) + 0.5) * dp : -1.0;
+  return 0.0;
+}
+
+PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], const PetscBool face[6], const PetscBool periodic[3], PetscReal depthmax, PetscInt *count, PetscReal **xout, PetscReal **vout, PetscReal **dout)
+{
+  const PetscInt  layers = (PetscInt)ceil(depthmax / dp);
+  const PetscReal vol = dim == 2 ? dp * dp : dp * dp * dp;
+  PetscInt        n[3], a[3], b[3], m = 0, total = 1;
+  PetscReal      *x, *v, *d;
+
+  PetscFunctionBegin;
+  PetscCall(SitesPerAxis(dim, dp, lo, hi, n));
+  for (int k = 0; k < 3; k++) {
+    const PetscBool lay = k < dim && !periodic[k] ? PETSC_TRUE : PETSC_FALSE;
+    a[k] = lay && face[2 * k] ? -layers : 0;
+    b[k] = n[k] + (lay && face[2 * k + 1] ? layers : 0);
+    total *= b[k] - a[k];
+  }
+  total -= n[0] * n[1] * n[2];
+  PetscCall(PetscMalloc1(3 * PetscMax(total, 1), &x));
+  PetscCall(PetscMalloc1(PetscMax(total, 1), &v));
+  PetscCall(PetscMalloc1(PetscMax(total, 1), &d));
+  for (PetscInt k = a[2]; k < b[2]; k++)
+    for (PetscInt j = a[1]; j < b[1]; j++)
+      for (PetscInt i = a[0]; i < b[0]; i++) {
+        const PetscInt  s[3] = {i, j, k};
+        PetscReal       depth = 0.0;
+        for (int c = 0; c < dim; c++) depth = PetscMax(depth, DepthBelow(s[c], n[c], dp, face[2 * c], face[2 * c + 1]));
+        if (depth <= 0.0) continue;
+        for (int c = 0; c < 3; c++) x[3 * m + c] = c < dim ? lo[c] + ((PetscReal)s[c] + 0.5) * dp : 0.0;
+        v[m] = vol;
+        d[m++] = depth;
+      }
+  *count = m;
+  *xout = x;
+  *vout = v;
+  *dout = d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,118 @@
+/*
+  sphimpl.h - private: the Sph object, its parameters and the operations of a backend.
+
+  State lives in structure-of-arrays form in sorted order (sphcell.h); id[] gives each slot's number in the order the
+  markers were added and slot[] is its inverse. All state is double; pair arithmetic is single or double (sph_cpupairs.c).
+*/
+#ifndef SPHIMPL_H
+#define SPHIMPL_H
+
+#include "sph.h"
+#include "sphcell.h"
+
+typedef struct {
+  PetscInt  dim;
+  PetscReal dp;      /* initial spacing, m */
+  PetscReal h;       /* smoothing length, m */
+  PetscReal rho0;    /* reference density, kg/m^3 */
+  PetscReal mu;      /* viscosity, Pa s */
+  PetscReal mupair;  /* viscosity in Eq. 6: mu, or mu over its lattice sum, Pa s */
+  PetscReal vmax;    /* expected maximum speed, m/s */
+  PetscReal cs;      /* speed of sound, m/s */
+  PetscReal gamma;   /* Eq. 7, - */
+  PetscReal B;       /* cs^2 rho0/gamma, Pa */
+  PetscReal pb;      /* background pressure, Pa */
+  PetscReal zeta;    /* XSPH factor, - */
+  PetscReal epsilon; /* Eq. 6, - */
+  PetscReal f[3];    /* body force, m/s^2 */
+  PetscReal lo[3], hi[3];
+  PetscBool periodic[3];
+  PetscReal dtfixed; /* s, or PETSC_DECIDE */
+  PetscReal cfl;
+  PetscInt  reinitevery, checkevery;
+  int       kernel; /* SphKernelType */
+  int       precision, wall, reinit;
+  PetscBool viscositylattice;
+} SphParams;
+
+/* One array per component, n long. */
+typedef struct {
+  double *x[3]; /* m */
+  double *v[3]; /* m/s */
+  double *s;    /* rho/rho0 - 1 */
+} SphState;
+
+typedef struct {
+  double *a[3];  /* right-hand side of Eq. 5 without f; boundary: force per marker mass; m/s^2 */
+  double *dv[3]; /* XSPH velocity, Eq. 11, m/s; zero on boundaries */
+  double *ds;    /* d(rho/rho0)/dt, 1/s */
+} SphRates;
+
+typedef struct _SphOps {
+  PetscErrorCode (*setup)(Sph);
+  PetscErrorCode (*build)(Sph);                    /* sort markers and find cell ranges when needed */
+  PetscErrorCode (*rates)(Sph);                    /* all right-hand sides at the current state */
+  PetscErrorCode (*halfstep)(Sph, PetscReal dt);   /* state_n := state; state += dt/2 rates */
+  PetscErrorCode (*fullstep)(Sph, PetscReal dt);   /* state := state_n + dt rates */
+  PetscErrorCode (*reinit)(Sph);                   /* Eq. 9 */
+  PetscErrorCode (*motion)(Sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a);
+  PetscErrorCode (*force)(Sph, PetscInt group, PetscReal *f);
+  PetscErrorCode (*limits)(Sph, PetscReal *vmax, PetscReal *amax);
+  PetscErrorCode (*pull)(Sph);                     /* make the host arrays current */
+  PetscErrorCode (*push)(Sph);                     /* host arrays changed */
+  PetscErrorCode (*destroy)(Sph);
+} SphOps;
+
+struct _p_Sph {
+  MPI_Comm  comm;
+  char      prefix[64];
+  char      type[16];
+  SphParams par;
+  PetscBool hset, hratioset, vmaxset, csset, domainset, setup;
+  PetscReal hratio;
+
+  PetscInt  n, nfluid, ngroups; /* markers; fluid ones; boundary groups */
+  PetscInt  cap;                /* room in the arrays below */
+  PetscInt *groupstart;         /* ngroups+1 offsets in added order */
+  PetscInt  groupcap;
+  PetscInt  left;               /* fluid markers that left through an open side */
+
+  SphState  st, stn;            /* now; at the beginning of the step */
+  SphRates  rate;
+  double   *m;                  /* mass, kg */
+  double   *wallratio;          /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0 */
+  double   *ab[3];              /* boundary acceleration, m/s^2 */
+  int      *group;              /* -1 fluid, -2 left, else group */
+  int      *id, *slot;
+
+  PetscReal t, dt;              /* time and current step, s */
+  PetscInt  step;
+  PetscBool insidestep, fixedwarned;
+  PetscReal evaluations;        /* marker right-hand sides evaluated */
+
+  const SphOps *ops;
+  void         *data;           /* backend */
+};
+
+FROND_VISIBLE extern const SphOps SphOps_CPU;
+#if defined(FROND_HAVE_CUDA)
+FROND_VISIBLE extern const SphOps SphOps_CUDA;
+extern PetscErrorCode SphCudaAvailable(PetscBool *yes);
+#endif
+
+extern PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output;
+
+/* sphcell.c: grid for the markers as they are, and a stable sort of all arrays into cell order. */
+extern PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *grid);
+extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap);
+extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *cellstart);
+
+/* sphwall.c: factor r in v_ext = v_b + r (v_b - <v>) for a marker `depth` below a flat surface. */
+extern PetscReal SphWallRatio(const SphParams *par, PetscReal depth);
+/* Lattice sum of Eq. 6 for a quadratic field, 1 when exact. */
+extern PetscReal SphViscosityLattice(const SphParams *par);
+
+/* sphcheck.c: a non-finite value in any field is PETSC_ERR_FP naming field, marker, step and time. */
+extern PetscErrorCode SphCheckFinite(Sph sph);
+
+#endif
