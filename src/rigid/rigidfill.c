@@ -222,21 +222,30 @@ static PetscErrorCode EllipseRing(Markers *m, PetscReal dp, const PetscInt axis[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Layer of an ellipsoid on the mean ellipsoid c, the volume between products of semi-axes vo and vi; rings about the longest
- * axis. */
+/* Axis about which the ellipsoid c is roundest: the ratio of the other two semi-axes is nearest to 1. */
+static PetscInt EllipsoidAxis(const PetscReal c[3])
+{
+  PetscInt w = 0;
+  PetscReal best = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < 3; k++) {
+    const PetscReal p = c[(k + 1) % 3], q = c[(k + 2) % 3], ratio = PetscMax(p, q) / PetscMin(p, q);
+    if (ratio < best) {
+      best = ratio;
+      w = k;
+    }
+  }
+  return w;
+}
+
+/* Layer of an ellipsoid on the mean ellipsoid c, the volume between products of semi-axes vo and vi. */
 static PetscErrorCode EllipsoidLayer(Markers *m, PetscReal dp, const PetscReal c[3], PetscReal vo, PetscReal vi)
 {
-  PetscInt w = 0, axis[3], n;
-  PetscReal *theta, mean;
+  const PetscInt w = EllipsoidAxis(c), axis[3] = {(w + 1) % 3, (w + 2) % 3, w};
+  const PetscReal mean = .5 * (c[axis[0]] + c[axis[1]]);
+  const PetscInt n = RoundToOne(EllipseArc(c[w], mean, PETSC_PI, 1, NULL) / dp);
+  PetscReal *theta;
 
   PetscFunctionBegin;
-  for (PetscInt k = 1; k < 3; k++)
-    if (c[k] > c[w]) w = k;
-  axis[0] = (w + 1) % 3;
-  axis[1] = (w + 2) % 3;
-  axis[2] = w;
-  mean = .5 * (c[axis[0]] + c[axis[1]]);
-  n = RoundToOne(EllipseArc(c[w], mean, PETSC_PI, 1, NULL) / dp);
   PetscCall(PetscMalloc1((size_t)(2 * n + 1), &theta));
   (void)EllipseArc(c[w], mean, PETSC_PI, n, theta);
   for (PetscInt i = 0; i < n; i++) {
@@ -248,26 +257,34 @@ static PetscErrorCode EllipsoidLayer(Markers *m, PetscReal dp, const PetscReal c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The core of an ellipsoid, thinner than 2 dp: cell centres of an even grid inside it share its volume. */
+/*
+  The core of an ellipsoid, thinner than 2 dp: cell centres of an even grid share its volume. They keep 0.3 dp from the core's
+  surface, less where each would stand for more than 1.5 cells.
+*/
 static PetscErrorCode EllipsoidCore(Markers *m, PetscInt dim, PetscReal dp, const PetscReal a[3], PetscReal volume)
 {
-  PetscInt n[3] = {1, 1, 1}, count = 0;
+  RigidBodySpec core;
+  PetscInt n[3] = {1, 1, 1};
   const PetscInt first = m->n;
+  const PetscReal fewest = volume / (1.5 * PetscPowReal(dp, (PetscReal)dim));
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < dim; k++) n[k] = RoundToOne(2. * a[k] / dp);
-  for (PetscInt c = 0; c < n[0] * n[1] * n[2]; c++) {
-    const PetscInt i[3] = {c % n[0], (c / n[0]) % n[1], c / (n[0] * n[1])};
-    PetscReal x[3] = {0., 0., 0.}, level = 0.;
-    for (PetscInt k = 0; k < dim; k++) {
-      const PetscReal u = 2. * ((PetscReal)i[k] + .5) / (PetscReal)n[k] - 1.;
-      x[k] = u * a[k];
-      level += u * u;
-    }
-    if (level < 1.) PetscCall(MarkersAdd(m, x[0], x[1], x[2], 0.));
+  PetscCall(RigidBodySpecInit(&core));
+  core.shape = RIGID_ELLIPSOID;
+  for (PetscInt k = 0; k < dim; k++) {
+    n[k] = RoundToOne(2. * a[k] / dp);
+    core.size[k] = a[k];
   }
-  count = m->n - first;
-  for (PetscInt i = first; i < m->n; i++) m->volume[i] = volume / (PetscReal)count;
+  for (PetscInt gap = 3; gap >= 0 && (PetscReal)(m->n - first) < fewest; gap--) {
+    m->n = first;
+    for (PetscInt c = 0; c < n[0] * n[1] * n[2]; c++) {
+      const PetscInt i[3] = {c % n[0], (c / n[0]) % n[1], c / (n[0] * n[1])};
+      PetscReal x[3] = {0., 0., 0.};
+      for (PetscInt k = 0; k < dim; k++) x[k] = a[k] * (2. * ((PetscReal)i[k] + .5) / (PetscReal)n[k] - 1.);
+      if (RigidShapeDistance(&core, x) <= -.1 * dp * (PetscReal)gap) PetscCall(MarkersAdd(m, x[0], x[1], x[2], 0.));
+    }
+  }
+  for (PetscInt i = first; i < m->n; i++) m->volume[i] = volume / (PetscReal)(m->n - first);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,2 @@
+frond_test(test_rigid_motion SOURCES test_rigid_motion.c LABELS unit validation)
+frond_test(test_rigid_shape SOURCES test_rigid_shape.c LABELS unit)
