@@ -1,0 +1,166 @@
+/*
+  app.h - private header of the `frond` command: scene, run, output.
+
+  A scene is a PETSc options file in YAML (scene.c lists its options); appbuild.c makes the solver objects from it,
+  apprun.c steps them, output.c and history.c write the results.
+*/
+#ifndef APP_H
+#define APP_H
+
+#include "couple.h"
+#include <stdint.h>
+#include <stdio.h>
+
+#define APP_NAME_LEN 64
+
+/* Exit codes of the command. */
+enum { APP_EXIT_OK = 0, APP_EXIT_USER = 1, APP_EXIT_NUMERICAL = 2, APP_EXIT_IO = 3 };
+
+/* apperror.c: one clear line for an error, whatever depth it comes from. */
+typedef struct {
+  PetscBool trace; /* print PETSc's trace too */
+  char message[2048];
+  char context[128]; /* what the command was doing, put before the message; empty for nothing */
+} AppErrors;
+PetscErrorCode AppErrorInstall(AppErrors *errors);
+int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr);
+
+/* appoptions.c: tables of options, read through PETSc so that -help lists them. */
+typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_STRING, OPT_VEC, OPT_AXISANGLE, OPT_CHOICE, OPT_SUBSET, OPT_NAMES } AppOptType;
+typedef struct {
+  AppOptType type;
+  const char *key, *help;
+  void *value; /* PetscReal, PetscInt, PetscBool, char[PETSC_MAX_PATH_LEN], PetscReal[3], [4], PetscInt, PetscBool[], AppNames */
+  const char *const *list; /* OPT_CHOICE, OPT_SUBSET: the words allowed, NULL at the end */
+  PetscBool *set;          /* becomes true when the option is given; may be NULL */
+} AppOpt;
+typedef struct {
+  PetscInt n;
+  char (*name)[APP_NAME_LEN];
+} AppNames;
+PetscErrorCode AppOptionsRead(const char prefix[], const char title[], PetscInt n, const AppOpt opt[]);
+PetscErrorCode AppOptionsInsertFile(const char file[]);
+PetscErrorCode AppNameCheck(const char key[], const char name[]);
+
+/* scene.c */
+typedef enum { BUOYANCY_RESOLVED, BUOYANCY_ARCHIMEDES } SceneBuoyancy;
+typedef enum { PRESSURE_HYDROSTATIC, PRESSURE_ZERO } ScenePressure;
+typedef struct {
+  char name[APP_NAME_LEN];
+  AncfBeamSpec spec;
+} SceneBeam;
+typedef struct {
+  char name[APP_NAME_LEN];
+  RigidBodySpec spec;
+} SceneBody;
+
+/* Fields of a frame that may be left out. */
+enum { FIELD_VELOCITY, FIELD_DENSITY, FIELD_PRESSURE, FIELD_GROUP, FIELD_ACCELERATION, FIELD_COUNT };
+extern const char *const SceneFields[];
+extern const char *const SceneFaces[]; /* xmin, xmax, ymin, ymax, zmin, zmax */
+
+typedef struct {
+  char name[APP_NAME_LEN];
+  PetscReal gravity[3]; /* m/s^2 */
+  SceneBuoyancy buoyancy;
+  PetscBool fluid;
+  PetscReal lo[3], hi[3]; /* domain, m */
+  PetscBool periodic[3], wall[6];
+  PetscReal wallvelocity[6][3]; /* m/s */
+  PetscReal fluidlo[3], fluidhi[3], fluidvelocity[3];
+  ScenePressure pressure;
+  PetscInt nbeams, nbodies;
+  SceneBeam *beams;
+  SceneBody *bodies;
+  PetscReal tend, dt; /* s; dt only without fluid */
+  char outdir[PETSC_MAX_PATH_LEN];
+  PetscBool overwrite;
+  PetscReal outevery, histevery, progressevery; /* s, s, s of wall time */
+  PetscBool field[FIELD_COUNT];
+  PetscInt faultfield, faultmarker, faultstep; /* -fault_nan; faultstep < 0: none */
+} AppScene;
+PetscErrorCode AppSceneRead(AppScene *scene, const char file[]);
+PetscErrorCode AppSceneCheck(const AppScene *scene, PetscInt dim);
+PetscErrorCode AppSceneDestroy(AppScene *scene);
+
+/* appbuild.c: the solver objects of a scene. */
+typedef struct {
+  char name[APP_NAME_LEN + 8];
+  CoupleSurface surface;
+  PetscInt markers;
+} AppSurface;
+typedef struct {
+  AppScene scene;
+  AppErrors *errors;
+  Sph sph;       /* NULL without fluid */
+  Ancf ancf;     /* NULL without beams */
+  Rigid rigid;   /* NULL without bodies */
+  Couple couple; /* NULL without fluid */
+  PetscInt dim, nsurfaces;
+  AppSurface *surfaces;
+  PetscInt nfluid, nboundary;
+  PetscReal t; /* time, s */
+  PetscInt step;
+} App;
+PetscErrorCode AppBuild(App *app);
+PetscErrorCode AppView(const App *app, FILE *out);
+PetscErrorCode AppDestroy(App *app);
+PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt);
+PetscErrorCode AppInjectFault(App *app);
+/* Position and velocity (m, m/s) at material coordinate s (m) of a beam, and r,x. */
+PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3]);
+
+/* appunknown.c: options that nothing has asked for are an error. */
+PetscErrorCode AppOptionsUnused(PetscBool only_unlisted, size_t len, char text[]);
+PetscErrorCode AppOptionsCheckUnused(void);
+PetscErrorCode AppHelp(void);
+
+/* output.c: one HDF5 file per frame and an XDMF index of them all. */
+typedef struct _AppOutput *AppOutput;
+PetscErrorCode AppOutputCreate(const App *app, AppOutput *out);
+PetscErrorCode AppOutputWrite(AppOutput out, App *app);
+PetscErrorCode AppOutputLast(AppOutput out, PetscReal *t, const char **file, PetscInt *frames);
+PetscErrorCode AppOutputDestroy(AppOutput *out);
+
+/* xdmf.c */
+typedef struct {
+  const App *app;
+  PetscInt nframes;
+  PetscReal *time;  /* nframes, s */
+  PetscInt *points; /* points on each beam's centre line, nbeams */
+} XdmfSeries;
+PetscErrorCode AppXdmfWrite(const char dir[], const XdmfSeries *series);
+void AppFrameName(PetscInt frame, size_t len, char name[]);
+
+/* h5write.c: datasets with unit and description. */
+typedef struct {
+  const char *name, *unit, *description;
+} H5Label;
+PetscErrorCode AppH5Create(const char file[], int64_t *id);
+PetscErrorCode AppH5Close(int64_t id, const char file[]);
+PetscErrorCode AppH5Group(int64_t loc, const char name[], int64_t *group);
+PetscErrorCode AppH5GroupClose(int64_t group);
+PetscErrorCode AppH5Real(int64_t loc, const H5Label *label, PetscBool single, PetscInt rows, PetscInt cols,
+                         const PetscReal *data);
+PetscErrorCode AppH5Int(int64_t loc, const H5Label *label, PetscInt rows, PetscInt cols, const PetscInt *data);
+PetscErrorCode AppH5AttrReal(int64_t loc, const char name[], PetscReal value);
+PetscErrorCode AppH5AttrInt(int64_t loc, const char name[], PetscInt value);
+PetscErrorCode AppH5AttrString(int64_t loc, const char name[], const char value[]);
+
+/* history.c: the probe table, CSV while running and HDF5 at the end. */
+typedef struct _AppHistory *AppHistory;
+PetscErrorCode AppHistoryCreate(App *app, AppHistory *history);
+PetscErrorCode AppHistoryRecord(AppHistory history, App *app, PetscReal dt);
+PetscErrorCode AppHistoryDestroy(AppHistory *history);
+/* Largest values seen in the rows so far: speed (m/s), compression (-), residual over scale (-), audit losses. */
+typedef struct {
+  PetscReal vmax, compression, residual, scale, forcelost, force, momentlost, moment, powerlost, power;
+} HistoryWorst;
+PetscErrorCode AppHistoryWorst(AppHistory history, HistoryWorst *worst);
+
+/* apprun.c, appcheck.c */
+PetscErrorCode AppRun(App *app, int *exitcode);
+PetscErrorCode AppCheck(App *app);
+PetscReal AppWallTime(void);
+
+#endif

@@ -1,0 +1,386 @@
+/* appbuild.c - the solver objects of a scene, and one step of them. */
+#include "app.h"
+#include "sphfill.h"
+#include <string.h>
+
+/* PETSc's context of the error line: what was being made. */
+#define AppDoing(app, ...)                                                                                                       \
+  do {                                                                                                                           \
+    if ((app)->errors) snprintf((app)->errors->context, sizeof((app)->errors->context), __VA_ARGS__);                            \
+  } while (0)
+
+static PetscErrorCode build_sph(App *app)
+{
+  AppScene *s = &app->scene;
+  PetscReal f[3];
+
+  PetscFunctionBegin;
+  app->dim = 3;
+  if (!s->fluid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SphCreate(PETSC_COMM_SELF, &app->sph));
+  PetscCall(SphSetFromOptions(app->sph));
+  PetscCall(SphGetDimension(app->sph, &app->dim));
+  PetscCall(AppSceneCheck(s, app->dim));
+  PetscCall(SphSetDomain(app->sph, s->lo, s->hi));
+  PetscCall(SphSetPeriodic(app->sph, s->periodic));
+  PetscCall(SphGetBodyForce(app->sph, f));
+  for (int a = 0; a < 3 && s->buoyancy == BUOYANCY_RESOLVED; a++) f[a] += s->gravity[a];
+  PetscCall(SphSetBodyForce(app->sph, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode build_structures(App *app)
+{
+  AppScene *s = &app->scene;
+  PetscReal rho = 0;
+
+  PetscFunctionBegin;
+  if (s->fluid && s->buoyancy == BUOYANCY_ARCHIMEDES) PetscCall(SphGetDensity(app->sph, &rho));
+  if (s->nbeams) {
+    PetscCall(AncfCreate(PETSC_COMM_SELF, &app->ancf));
+    PetscCall(AncfSetGravity(app->ancf, s->gravity));
+    PetscCall(AncfSetFluidDensity(app->ancf, rho));
+    for (PetscInt b = 0; b < s->nbeams; b++) {
+      AppDoing(app, "beam '%s'", s->beams[b].name);
+      PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
+      AppDoing(app, "%s", "");
+    }
+    PetscCall(AncfSetFromOptions(app->ancf));
+    PetscCall(AncfSetUp(app->ancf));
+  }
+  if (s->nbodies) {
+    PetscCall(RigidCreate(PETSC_COMM_SELF, &app->rigid));
+    PetscCall(RigidSetDimension(app->rigid, app->dim));
+    PetscCall(RigidSetGravity(app->rigid, s->gravity));
+    PetscCall(RigidSetFluidDensity(app->rigid, rho));
+    PetscCall(RigidSetFromOptions(app->rigid));
+    for (PetscInt b = 0; b < s->nbodies; b++) {
+      AppDoing(app, "body '%s'", s->bodies[b].name);
+      PetscCall(RigidAddBody(app->rigid, &s->bodies[b].spec, NULL));
+      AppDoing(app, "%s", "");
+    }
+    PetscCall(RigidSetUp(app->rigid));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* --- the fluid lattice ----------------------------------------------------------------------------------------- */
+
+typedef struct {
+  const App *app;
+  PetscReal (*X)[3], (*R)[9]; /* of each body */
+  PetscReal shift[27][3];     /* periodic images, m */
+  PetscInt nshift;
+} Carve;
+
+static PetscBool inside_beam(const AncfBeamSpec *spec, PetscInt dim, const PetscReal x[3])
+{
+  PetscReal L2 = 0, s = 0, r2 = 0, t[3];
+
+  for (PetscInt a = 0; a < dim; a++) {
+    t[a] = spec->end[a] - spec->start[a];
+    L2 += t[a] * t[a];
+    s += t[a] * (x[a] - spec->start[a]);
+  }
+  s /= L2;
+  if (s < 0 || s > 1) return PETSC_FALSE;
+  for (PetscInt a = 0; a < dim; a++) r2 += PetscSqr(x[a] - spec->start[a] - s * t[a]);
+  return (PetscBool)(r2 < PetscSqr(spec->diameter / 2));
+}
+
+static PetscBool inside_body(const Carve *c, PetscInt body, const PetscReal x[3])
+{
+  const PetscReal *X = c->X[body], *R = c->R[body];
+  PetscReal d[3], xb[3];
+
+  for (int a = 0; a < 3; a++) d[a] = (a < c->app->dim) ? x[a] - X[a] : 0;
+  for (int a = 0; a < 3; a++) xb[a] = R[a] * d[0] + R[3 + a] * d[1] + R[6 + a] * d[2];
+  return (PetscBool)(RigidShapeDistance(&c->app->scene.bodies[body].spec, xb) < 0);
+}
+
+/* A lattice site is fluid when neither a beam nor a body, nor a periodic image of one, holds it. */
+static PetscBool keep_site(const PetscReal x[3], void *ctx)
+{
+  const Carve *c = ctx;
+  const AppScene *s = &c->app->scene;
+
+  for (PetscInt k = 0; k < c->nshift; k++) {
+    const PetscReal y[3] = {x[0] + c->shift[k][0], x[1] + c->shift[k][1], x[2] + c->shift[k][2]};
+    for (PetscInt b = 0; b < s->nbeams; b++)
+      if (inside_beam(&s->beams[b].spec, c->app->dim, y)) return PETSC_FALSE;
+    for (PetscInt b = 0; b < s->nbodies; b++)
+      if (inside_body(c, b, y)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode carve_images(Carve *c)
+{
+  const AppScene *s = &c->app->scene;
+  PetscInt reach[3];
+
+  PetscFunctionBegin;
+  for (int a = 0; a < 3; a++) reach[a] = (a < c->app->dim && s->periodic[a]) ? 1 : 0;
+  c->nshift = 0;
+  for (PetscInt i = -reach[0]; i <= reach[0]; i++)
+    for (PetscInt j = -reach[1]; j <= reach[1]; j++)
+      for (PetscInt k = -reach[2]; k <= reach[2]; k++) {
+        PetscReal *d = c->shift[c->nshift++];
+        d[0] = (PetscReal)i * (s->hi[0] - s->lo[0]);
+        d[1] = (PetscReal)j * (s->hi[1] - s->lo[1]);
+        d[2] = (PetscReal)k * (s->hi[2] - s->lo[2]);
+      }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Depth below the top of the fluid box along gravity times |g|, m^2/s^2. */
+static PetscReal head(const AppScene *s, PetscInt dim, const PetscReal x[3])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt a = 0; a < dim; a++) sum += s->gravity[a] * (x[a] - (s->gravity[a] > 0 ? s->fluidlo[a] : s->fluidhi[a]));
+  return sum;
+}
+
+static PetscErrorCode check_size(const App *app, PetscReal dp)
+{
+  const AppScene *s = &app->scene;
+  PetscReal sites = 1;
+
+  PetscFunctionBegin;
+  for (PetscInt a = 0; a < app->dim; a++) sites *= PetscMax((PetscReal)1, (s->fluidhi[a] - s->fluidlo[a]) / dp);
+  PetscCheck(3 * sites < (PetscReal)PETSC_MAX_INT && sites < 7e8, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_dp = %g m puts about %.2g markers into the fluid box; this build takes fewer than 7e8", (double)dp,
+             (double)sites);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode fill_fluid(App *app)
+{
+  AppScene *s = &app->scene;
+  Carve c = {.app = app};
+  PetscReal dp, rho, *x = NULL, *v = NULL, *p = NULL;
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(SphGetSpacing(app->sph, &dp));
+  PetscCall(SphGetDensity(app->sph, &rho));
+  PetscCall(check_size(app, dp));
+  PetscCall(PetscMalloc2(s->nbodies, &c.X, s->nbodies, &c.R));
+  for (PetscInt b = 0; b < s->nbodies; b++) {
+    PetscReal q[4];
+    PetscCall(RigidGetState(app->rigid, b, c.X[b], q, NULL, NULL));
+    RigidRotationMatrix(q, c.R[b]);
+  }
+  PetscCall(carve_images(&c));
+  PetscCall(SphFillBox(app->dim, dp, s->fluidlo, s->fluidhi, keep_site, &c, &n, &x));
+  PetscCall(PetscFree2(c.X, c.R));
+  PetscCheck(n > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "the domain has no fluid: no marker of spacing sph_dp = %g m fits into the fluid box outside the structures",
+             (double)dp);
+  PetscCall(PetscMalloc2(3 * n, &v, n, &p));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscArraycpy(v + 3 * i, s->fluidvelocity, 3));
+    p[i] = s->pressure == PRESSURE_HYDROSTATIC ? rho * head(s, app->dim, x + 3 * i) : 0;
+  }
+  PetscCall(SphAddFluid(app->sph, n, x, v, p));
+  app->nfluid = n;
+  PetscCall(PetscFree2(v, p));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* --- surfaces -------------------------------------------------------------------------------------------------- */
+
+static PetscErrorCode add_surface(App *app, const char name[], PetscInt markers, CoupleSurface surface)
+{
+  AppSurface *at = &app->surfaces[app->nsurfaces++];
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(at->name, name, sizeof(at->name)));
+  at->surface = surface;
+  at->markers = markers;
+  PetscCall(CoupleAddSurface(app->couple, surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The face that a wall marker belongs to: of those it lies outside of, one at rest before one that moves. */
+static PetscInt wall_face(const AppScene *s, PetscInt dim, const PetscReal x[3])
+{
+  PetscInt moving = -1;
+
+  for (PetscInt f = 0; f < 2 * dim; f++) {
+    const PetscReal *v = s->wallvelocity[f];
+    PetscBool outside = (PetscBool)(f % 2 ? x[f / 2] > s->hi[f / 2] : x[f / 2] < s->lo[f / 2]);
+    if (!s->wall[f] || !outside) continue;
+    if (v[0] == 0 && v[1] == 0 && v[2] == 0) return f;
+    moving = f;
+  }
+  return moving;
+}
+
+static PetscErrorCode add_walls(App *app)
+{
+  AppScene *s = &app->scene;
+  PetscInt n = 0, m;
+  PetscReal dp, support, *x, *volume, *depth, *fx, *fvolume, *fdepth;
+  CoupleSurface surface;
+  char name[APP_NAME_LEN];
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (int f = 0; f < 6; f++) any = (PetscBool)(any || s->wall[f]);
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SphGetSpacing(app->sph, &dp));
+  PetscCall(SphGetSupport(app->sph, &support));
+  PetscCall(SphFillWalls(app->dim, dp, s->lo, s->hi, s->wall, s->periodic, support, &n, &x, &volume, &depth));
+  PetscCall(PetscMalloc3(3 * n, &fx, n, &fvolume, n, &fdepth));
+  for (PetscInt f = 0; f < 6; f++) {
+    m = 0;
+    for (PetscInt i = 0; i < n && s->wall[f]; i++) {
+      if (wall_face(s, app->dim, x + 3 * i) != f) continue;
+      PetscCall(PetscArraycpy(fx + 3 * m, x + 3 * i, 3));
+      fvolume[m] = volume[i];
+      fdepth[m++] = depth[i];
+    }
+    if (!m) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "wall_%s", SceneFaces[f]));
+    PetscCall(CoupleSurfaceCreateWall(PETSC_COMM_SELF, name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
+    PetscCall(add_surface(app, name, m, surface));
+  }
+  PetscCall(PetscFree3(fx, fvolume, fdepth));
+  PetscCall(PetscFree(x));
+  PetscCall(PetscFree(volume));
+  PetscCall(PetscFree(depth));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode build_couple(App *app)
+{
+  AppScene *s = &app->scene;
+  PetscReal dp, support;
+  CoupleSurface surface;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(6 + s->nbeams + s->nbodies, &app->surfaces));
+  if (!s->fluid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CoupleCreate(PETSC_COMM_SELF, &app->couple));
+  PetscCall(CoupleSetSph(app->couple, app->sph));
+  if (app->ancf) PetscCall(CoupleSetAncf(app->couple, app->ancf));
+  if (app->rigid) PetscCall(CoupleSetRigid(app->couple, app->rigid));
+  PetscCall(CoupleSetFromOptions(app->couple));
+  PetscCall(fill_fluid(app));
+  PetscCall(add_walls(app));
+  PetscCall(SphGetSpacing(app->sph, &dp));
+  PetscCall(SphGetSupport(app->sph, &support));
+  for (PetscInt b = 0; b < s->nbeams; b++) {
+    AppDoing(app, "beam '%s'", s->beams[b].name);
+    PetscCall(CoupleSurfaceCreateBeam(app->ancf, b, app->dim, dp, support, &surface));
+    PetscCall(add_surface(app, s->beams[b].name, 0, surface));
+  }
+  for (PetscInt b = 0; b < s->nbodies; b++) {
+    AppDoing(app, "body '%s'", s->bodies[b].name);
+    PetscCall(CoupleSurfaceCreateRigid(app->rigid, b, app->dim, dp, support, &surface));
+    PetscCall(add_surface(app, s->bodies[b].name, 0, surface));
+  }
+  AppDoing(app, "%s", "");
+  PetscCall(CoupleSetUp(app->couple));
+  PetscCall(SphGetCounts(app->sph, &app->nfluid, &app->nboundary, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Make and set up everything that app->scene asks for. */
+PetscErrorCode AppBuild(App *app)
+{
+  PetscFunctionBegin;
+  PetscCall(build_sph(app));
+  PetscCall(build_structures(app));
+  PetscCall(build_couple(app));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppDestroy(App *app)
+{
+  PetscFunctionBegin;
+  PetscCall(CoupleDestroy(&app->couple));
+  for (PetscInt i = 0; i < app->nsurfaces; i++) PetscCall(CoupleSurfaceDestroy(&app->surfaces[i].surface));
+  PetscCall(PetscFree(app->surfaces));
+  PetscCall(SphDestroy(&app->sph));
+  PetscCall(AncfDestroy(&app->ancf));
+  PetscCall(RigidDestroy(&app->rigid));
+  PetscCall(AppSceneDestroy(&app->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* --- stepping -------------------------------------------------------------------------------------------------- */
+
+/* One step, not past tmax (s); dt (s) is the step taken. */
+PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt)
+{
+  PetscReal t;
+
+  PetscFunctionBegin;
+  if (app->couple) {
+    PetscCall(CoupleStep(app->couple, tmax, dt));
+    PetscCall(CoupleGetTime(app->couple, &app->t, &app->step));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  t = app->t + app->scene.dt;
+  if (t > tmax - 1e-9 * app->scene.dt) t = tmax;
+  if (app->ancf) PetscCall(AncfAdvance(app->ancf, t));
+  if (app->rigid) PetscCall(RigidAdvance(app->rigid, t));
+  *dt = t - app->t;
+  app->t = t;
+  app->step++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The option -fault_nan: before the chosen step one value of one marker becomes NaN. */
+PetscErrorCode AppInjectFault(App *app)
+{
+  const AppScene *s = &app->scene;
+  PetscInt n = app->nfluid + app->nboundary;
+  PetscReal *value;
+  SphFields f;
+
+  PetscFunctionBegin;
+  if (s->faultstep < 0 || app->step != s->faultstep) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(s->faultmarker < n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "fault_nan: marker %" PetscInt_FMT " must be below %" PetscInt_FMT "", s->faultmarker, n);
+  PetscCall(PetscMalloc1(3 * n, &value));
+  PetscCall(PetscMemzero(&f, sizeof(f)));
+  if (s->faultfield == 0)
+    f.x = value;
+  else if (s->faultfield == 1)
+    f.v = value;
+  else
+    f.rho = value;
+  PetscCall(SphGetFields(app->sph, &f));
+  value[s->faultfield == 2 ? s->faultmarker : 3 * s->faultmarker] = (PetscReal)NAN;
+  PetscCall(SphSetFields(app->sph, &f));
+  PetscCall(PetscFree(value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3])
+{
+  const PetscReal *e, *edot, *eddot;
+  PetscReal l, t, S[4], Sx[4];
+  PetscInt first, k, ne = app->scene.beams[beam].spec.elements;
+  AncfBeamSpec spec;
+
+  PetscFunctionBegin;
+  PetscCall(AncfGetBeam(app->ancf, beam, &spec, &first, &l));
+  PetscCall(AncfGetState(app->ancf, &t, &e, &edot, &eddot));
+  k = PetscMin((PetscInt)(s / l), ne - 1);
+  AncfShape(s / l - (PetscReal)k, l, S);
+  AncfShapeX(s / l - (PetscReal)k, l, Sx);
+  e += 6 * (first + k);
+  edot += 6 * (first + k);
+  for (int a = 0; a < 3; a++) {
+    r[a] = S[0] * e[a] + S[1] * e[3 + a] + S[2] * e[6 + a] + S[3] * e[9 + a];
+    v[a] = S[0] * edot[a] + S[1] * edot[3 + a] + S[2] * edot[6 + a] + S[3] * edot[9 + a];
+    if (rx) rx[a] = Sx[0] * e[a] + Sx[1] * e[3 + a] + Sx[2] * e[6 + a] + Sx[3] * e[9 + a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,219 @@
+/*
+  appunknown.c - help, and options that nobody knows.
+
+  The names that exist are those that -help lists: they are collected by running every SetFromOptions with PETSc's
+  help printer replaced by one that takes the names down.
+*/
+#include "app.h"
+#include <ctype.h>
+#include <stdarg.h>
+#include <string.h>
+
+typedef struct {
+  PetscInt n, alloc;
+  char **name;
+} NameList;
+
+static NameList *collecting; /* PETSc's help printer has no context argument */
+
+static PetscErrorCode collect_name(MPI_Comm comm, const char format[], ...)
+{
+  char line[4096], *start, *end;
+  va_list args;
+
+  va_start(args, format);
+  vsnprintf(line, sizeof(line), format, args);
+  va_end(args);
+  (void)comm;
+  for (start = line; *start == ' ';) start++;
+  if (start == line || *start != '-' || !collecting) return PETSC_SUCCESS;
+  start++;
+  for (end = start; isalnum((unsigned char)*end) || *end == '_' || *end == '-';) end++;
+  if (end == start || *end != ':') return PETSC_SUCCESS;
+  *end = 0;
+  if (collecting->n == collecting->alloc) {
+    collecting->alloc = 2 * collecting->alloc + 256;
+    collecting->name = realloc(collecting->name, (size_t)collecting->alloc * sizeof(char *));
+  }
+  collecting->name[collecting->n++] = strdup(start);
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode scene_options(void)
+{
+  AppScene scene;
+
+  PetscFunctionBegin;
+  PetscCall(AppSceneRead(&scene, "scene"));
+  PetscCall(AppSceneDestroy(&scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode sph_options(void)
+{
+  Sph sph;
+
+  PetscFunctionBegin;
+  PetscCall(SphCreate(PETSC_COMM_SELF, &sph));
+  PetscCall(SphSetFromOptions(sph));
+  PetscCall(SphDestroy(&sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ancf_options(void)
+{
+  Ancf ancf;
+
+  PetscFunctionBegin;
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &ancf));
+  PetscCall(AncfSetFromOptions(ancf));
+  PetscCall(AncfDestroy(&ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode rigid_options(void)
+{
+  Rigid rigid;
+
+  PetscFunctionBegin;
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &rigid));
+  PetscCall(RigidSetFromOptions(rigid));
+  PetscCall(RigidDestroy(&rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode couple_options(void)
+{
+  Couple couple;
+
+  PetscFunctionBegin;
+  PetscCall(CoupleCreate(PETSC_COMM_SELF, &couple));
+  PetscCall(CoupleSetFromOptions(couple));
+  PetscCall(CoupleDestroy(&couple));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The command's own words, which PETSc's help does not list. */
+static const char *const own_words[] = {"help", "version", "error_trace"};
+
+/* Print the help of every option (with -help in the database). */
+PetscErrorCode AppHelp(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+  PetscCall(scene_options());
+  PetscCall(sph_options());
+  PetscCall(rigid_options());
+  PetscCall(couple_options());
+  PetscCall(ancf_options());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode collect(NameList *list)
+{
+  PetscErrorCode (*printer)(MPI_Comm, const char[], ...) = PetscHelpPrintf;
+  PetscErrorCode (*const part[])(void) = {scene_options, sph_options, rigid_options, couple_options, ancf_options};
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  collecting = list;
+  PetscHelpPrintf = collect_name;
+  for (size_t i = 0; i < sizeof(part) / sizeof(part[0]); i++)
+    (void)part[i](); /* a bad value ends one part's list early, no more */
+  PetscHelpPrintf = printer;
+  collecting = NULL;
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscOptionsClearValue(NULL, "-help"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Damerau-Levenshtein distance (adjacent transpositions count one), at most 64 letters. */
+static int distance(const char a[], const char b[])
+{
+  int d[66][66], m = (int)PetscMin(strlen(a), (size_t)64), n = (int)PetscMin(strlen(b), (size_t)64);
+
+  for (int i = 0; i <= m; i++) d[i][0] = i;
+  for (int j = 0; j <= n; j++) d[0][j] = j;
+  for (int i = 1; i <= m; i++)
+    for (int j = 1; j <= n; j++) {
+      d[i][j] = PetscMin(PetscMin(d[i - 1][j], d[i][j - 1]) + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1]));
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = PetscMin(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[m][n];
+}
+
+/* known: the name is listed. nearest: the closest listed name, or NULL when none is close. */
+static void look_up(const NameList *list, const char name[], PetscBool *known, const char **nearest)
+{
+  int best = 1 + (int)strlen(name) / 4, d;
+
+  *known = PETSC_FALSE;
+  *nearest = NULL;
+  for (size_t i = 0; i < sizeof(own_words) / sizeof(own_words[0]); i++)
+    if (!strcasecmp(own_words[i], name)) *known = PETSC_TRUE;
+  for (PetscInt i = 0; i < list->n && !*known; i++) {
+    d = distance(name, list->name[i]);
+    if (d == 0) *known = PETSC_TRUE;
+    if (d <= best) {
+      best = d - 1;
+      *nearest = list->name[i];
+    }
+  }
+}
+
+/* PETSc reads these at its end, or they are for people to see. */
+static PetscBool is_petsc_wide(const char name[])
+{
+  static const char *const stems[] = {"log_",    "malloc",  "info",   "options_", "on_error_", "memory_",
+                                      "viewer_", "fp_trap", "check_", "debug",    "display",   "nox"};
+
+  for (size_t i = 0; i < sizeof(stems) / sizeof(stems[0]); i++)
+    if (!strncasecmp(name, stems[i], strlen(stems[i]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*
+  One sentence about the options that were set and that nothing asked for; empty when there are none. With `only_unlisted`,
+  an option that exists but was not asked for yet is no offence.
+*/
+PetscErrorCode AppOptionsUnused(PetscBool only_unlisted, size_t len, char text[])
+{
+  NameList list = {0, 0, NULL};
+  PetscInt n;
+  char **name, **value, one[512];
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &name, &value));
+  for (PetscInt i = 0; i < n; i++) {
+    const char *nearest;
+    PetscBool known;
+    if (is_petsc_wide(name[i])) continue;
+    if (!list.n) PetscCall(collect(&list));
+    look_up(&list, name[i], &known, &nearest);
+    if (known && only_unlisted) continue;
+    if (known)
+      snprintf(one, sizeof(one), "%soption %s has no effect in this scene", text[0] ? "; " : "", name[i]);
+    else if (nearest)
+      snprintf(one, sizeof(one), "%sunknown option %s (did you mean %s?)", text[0] ? "; " : "", name[i], nearest);
+    else
+      snprintf(one, sizeof(one), "%sunknown option %s", text[0] ? "; " : "", name[i]);
+    PetscCall(PetscStrlcat(text, one, len));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &name, &value));
+  for (PetscInt i = 0; i < list.n; i++) free(list.name[i]);
+  free(list.name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After all set-up: an option that nothing asked for is an error that names it. */
+PetscErrorCode AppOptionsCheckUnused(void)
+{
+  char text[1600];
+
+  PetscFunctionBegin;
+  PetscCall(AppOptionsUnused(PETSC_FALSE, sizeof(text), text));
+  PetscCheck(!text[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "%s", text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

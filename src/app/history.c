@@ -1,0 +1,267 @@
+/*
+  history.c - the probe table of a run: beam tips, body states, fluid forces, energies, momentum balance, transfer audit.
+
+  history.csv grows while the run goes on, one flushed line per row; history.h5 holds the same columns as datasets
+  and is written at the end. A value that is not finite stops the run before its row is written.
+*/
+#include "app.h"
+#include <errno.h>
+#include <string.h>
+
+typedef struct {
+  char name[96], unit[16], description[96];
+} Column;
+
+struct _AppHistory {
+  char dir[PETSC_MAX_PATH_LEN];
+  FILE *csv;
+  PetscInt ncols, acols, nrows, arows, at; /* at: the column being filled */
+  Column *column;
+  PetscReal *row, *rows; /* ncols; nrows x ncols */
+  HistoryWorst worst;
+};
+
+static PetscReal norm3(const PetscReal v[3])
+{
+  return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* Append a value; the first row also makes the column. */
+static PetscErrorCode put(AppHistory h, const char name[], const char unit[], const char description[], PetscReal value)
+{
+  PetscFunctionBegin;
+  if (!h->nrows && h->at == h->ncols) {
+    if (h->ncols == h->acols) {
+      h->acols = 2 * h->acols + 32;
+      PetscCall(PetscRealloc((size_t)h->acols * sizeof(Column), &h->column));
+      PetscCall(PetscRealloc((size_t)h->acols * sizeof(PetscReal), &h->row));
+    }
+    PetscCall(PetscStrncpy(h->column[h->ncols].name, name, sizeof(h->column->name)));
+    PetscCall(PetscStrncpy(h->column[h->ncols].unit, unit, sizeof(h->column->unit)));
+    PetscCall(PetscStrncpy(h->column[h->ncols].description, description, sizeof(h->column->description)));
+    h->ncols++;
+  }
+  h->row[h->at++] = value;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode put3(AppHistory h, const char stem[], const char unit[], const char description[], const PetscReal value[3])
+{
+  char name[96];
+
+  PetscFunctionBegin;
+  for (int a = 0; a < 3; a++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s%c", stem, "xyz"[a]));
+    PetscCall(put(h, name, unit, description, value[a]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode put_beams(AppHistory h, App *app)
+{
+  PetscReal kinetic, elastic, potential, r[3], v[3], reaction[3], L;
+  char stem[96];
+
+  PetscFunctionBegin;
+  if (!app->ancf) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < app->scene.nbeams; b++) {
+    const AncfBeamSpec *spec = &app->scene.beams[b].spec;
+    const PetscReal d[3] = {spec->end[0] - spec->start[0], spec->end[1] - spec->start[1], spec->end[2] - spec->start[2]};
+    L = norm3(d);
+    PetscCall(AppBeamPoint(app, b, L, r, v, NULL));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_tip_", app->scene.beams[b].name));
+    PetscCall(put3(h, stem, "m", "position of the beam's last end", r));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_tip_v", app->scene.beams[b].name));
+    PetscCall(put3(h, stem, "m/s", "velocity of the beam's last end", v));
+  }
+  PetscCall(AncfGetEnergy(app->ancf, &kinetic, &elastic, &potential));
+  PetscCall(put(h, "beams_kinetic", "J", "kinetic energy of all beams", kinetic));
+  PetscCall(put(h, "beams_elastic", "J", "elastic energy of all beams", elastic));
+  PetscCall(put(h, "beams_potential", "J", "potential energy of all beams", potential));
+  PetscCall(AncfGetReaction(app->ancf, reaction));
+  PetscCall(put3(h, "beams_support_", "N", "force of the supports on all beams", reaction));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode put_bodies(AppHistory h, App *app)
+{
+  PetscReal kinetic, potential, X[3], V[3], W[3];
+  char stem[96];
+
+  PetscFunctionBegin;
+  if (!app->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < app->scene.nbodies; b++) {
+    PetscCall(RigidGetState(app->rigid, b, X, NULL, V, W));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_", app->scene.bodies[b].name));
+    PetscCall(put3(h, stem, "m", "centre of mass of the body", X));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_v", app->scene.bodies[b].name));
+    PetscCall(put3(h, stem, "m/s", "velocity of the body's centre of mass", V));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_w", app->scene.bodies[b].name));
+    PetscCall(put3(h, stem, "rad/s", "angular velocity of the body, space frame", W));
+  }
+  PetscCall(RigidGetEnergy(app->rigid, &kinetic, &potential));
+  PetscCall(put(h, "bodies_kinetic", "J", "kinetic energy of all bodies", kinetic));
+  PetscCall(put(h, "bodies_potential", "J", "potential energy of all bodies", potential));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode put_surfaces(AppHistory h, App *app)
+{
+  const PetscBool flat = (PetscBool)(app->dim == 2);
+  const char *force = flat ? "N/m" : "N", *moment = flat ? "N" : "N m", *power = flat ? "W/m" : "W";
+  PetscReal lost[3] = {0, 0, 0};
+  HistoryWorst *worst = &h->worst;
+  char stem[96];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < app->nsurfaces; i++) {
+    CoupleAudit audit;
+    PetscCall(CoupleGetAudit(app->couple, i, &audit));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_f", app->surfaces[i].name));
+    PetscCall(put3(h, stem, force, "force of the fluid on this surface", audit.force));
+    lost[0] = PetscMax(lost[0], norm3(audit.force_lost));
+    lost[1] = PetscMax(lost[1], norm3(audit.moment_lost));
+    lost[2] = PetscMax(lost[2], PetscAbsReal(audit.power_lost));
+    worst->force = PetscMax(worst->force, norm3(audit.force));
+    worst->moment = PetscMax(worst->moment, norm3(audit.moment));
+    worst->power = PetscMax(worst->power, PetscAbsReal(audit.power));
+  }
+  PetscCall(
+      put(h, "transfer_force_lost", force, "largest over the surfaces: marker total less what the structure received", lost[0]));
+  PetscCall(put(h, "transfer_moment_lost", moment, "largest over the surfaces: marker total less what the structure received",
+                lost[1]));
+  PetscCall(
+      put(h, "transfer_power_lost", power, "largest over the surfaces: marker total less what the structure received", lost[2]));
+  worst->forcelost = PetscMax(worst->forcelost, lost[0]);
+  worst->momentlost = PetscMax(worst->momentlost, lost[1]);
+  worst->powerlost = PetscMax(worst->powerlost, lost[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode put_fluid(AppHistory h, App *app)
+{
+  const PetscBool flat = (PetscBool)(app->dim == 2);
+  const char *energy = flat ? "J/m" : "J", *impulse = flat ? "kg/s" : "kg m/s";
+  SphSums sums;
+  CoupleBalance balance;
+
+  PetscFunctionBegin;
+  if (!app->sph) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SphGetSums(app->sph, &sums));
+  PetscCall(put(h, "fluid_mass", flat ? "kg/m" : "kg", "mass of the fluid", sums.mass));
+  PetscCall(put(h, "fluid_kinetic", energy, "kinetic energy of the fluid", sums.kinetic));
+  PetscCall(put(h, "fluid_potential", energy, "potential energy of the fluid in the body force", sums.potential));
+  PetscCall(put(h, "fluid_internal", energy, "energy of compression of the fluid", sums.internal));
+  PetscCall(put(h, "fluid_speed_max", "m/s", "largest speed of a fluid marker", sums.vmax));
+  PetscCall(put(h, "fluid_compression_max", "1", "largest |rho/rho0 - 1| of a fluid marker", sums.compression));
+  PetscCall(put3(h, "fluid_momentum_", impulse, "momentum of the fluid", sums.momentum));
+  PetscCall(put_surfaces(h, app));
+  PetscCall(CoupleGetBalance(app->couple, &balance));
+  PetscCall(put3(h, "momentum_residual_", impulse, "momentum now - initial - impulses of body forces, supports and walls",
+                 balance.residual));
+  PetscCall(put(h, "momentum_scale", impulse, "largest term of the momentum balance", balance.scale));
+  h->worst.vmax = PetscMax(h->worst.vmax, sums.vmax);
+  h->worst.compression = PetscMax(h->worst.compression, sums.compression);
+  if (balance.scale > 0) h->worst.residual = PetscMax(h->worst.residual, norm3(balance.residual) / balance.scale);
+  h->worst.scale = PetscMax(h->worst.scale, balance.scale);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode write_header(AppHistory h)
+{
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < h->ncols; c++) fprintf(h->csv, "%s%s[%s]", c ? "," : "", h->column[c].name, h->column[c].unit);
+  fputc('\n', h->csv);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppHistoryCreate(App *app, AppHistory *history)
+{
+  char path[PETSC_MAX_PATH_LEN + 32];
+  AppHistory h;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&h));
+  *history = h;
+  PetscCall(PetscStrncpy(h->dir, app->scene.outdir, sizeof(h->dir)));
+  snprintf(path, sizeof(path), "%s/history.csv", h->dir);
+  h->csv = fopen(path, "w");
+  PetscCheck(h->csv, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write '%s': %s", path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Add the row of the current time; dt (s) is the last step's. */
+PetscErrorCode AppHistoryRecord(AppHistory h, App *app, PetscReal dt)
+{
+  PetscFunctionBegin;
+  h->at = 0;
+  PetscCall(put(h, "time", "s", "time", app->t));
+  PetscCall(put(h, "step", "1", "number of steps taken", (PetscReal)app->step));
+  PetscCall(put(h, "dt", "s", "last time step", dt));
+  PetscCall(put_beams(h, app));
+  PetscCall(put_bodies(h, app));
+  PetscCall(put_fluid(h, app));
+  for (PetscInt c = 0; c < h->ncols; c++)
+    PetscCheck(!PetscIsInfOrNanReal(h->row[c]), PETSC_COMM_SELF, PETSC_ERR_FP,
+               "%s is not finite at step %" PetscInt_FMT ", time %g s", h->column[c].name, app->step, (double)app->t);
+  if (!h->nrows) PetscCall(write_header(h));
+  for (PetscInt c = 0; c < h->ncols; c++) fprintf(h->csv, "%s%.15g", c ? "," : "", (double)h->row[c]);
+  fputc('\n', h->csv);
+  PetscCheck(!fflush(h->csv) && !ferror(h->csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s/history.csv': %s",
+             h->dir, strerror(errno));
+  if (h->nrows == h->arows) {
+    h->arows = 2 * h->arows + 256;
+    PetscCall(PetscRealloc((size_t)h->arows * (size_t)h->ncols * sizeof(PetscReal), &h->rows));
+  }
+  PetscCall(PetscArraycpy(h->rows + (size_t)h->nrows * (size_t)h->ncols, h->row, h->ncols));
+  h->nrows++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode write_h5(AppHistory h)
+{
+  char path[PETSC_MAX_PATH_LEN + 32], tmp[PETSC_MAX_PATH_LEN + 40];
+  PetscReal *values;
+  int64_t file;
+
+  PetscFunctionBegin;
+  snprintf(path, sizeof(path), "%s/history.h5", h->dir);
+  snprintf(tmp, sizeof(tmp), "%s.part", path);
+  PetscCall(PetscMalloc1(h->nrows, &values));
+  PetscCall(AppH5Create(tmp, &file));
+  for (PetscInt c = 0; c < h->ncols; c++) {
+    const H5Label label = {h->column[c].name, h->column[c].unit, h->column[c].description};
+    for (PetscInt r = 0; r < h->nrows; r++) values[r] = h->rows[(size_t)r * (size_t)h->ncols + (size_t)c];
+    PetscCall(AppH5Real(file, &label, PETSC_FALSE, h->nrows, 0, values));
+  }
+  PetscCall(AppH5Close(file, path));
+  PetscCheck(!rename(tmp, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s': %s", path, strerror(errno));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppHistoryWorst(AppHistory h, HistoryWorst *worst)
+{
+  PetscFunctionBegin;
+  *worst = h->worst;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Close the table and write history.h5. */
+PetscErrorCode AppHistoryDestroy(AppHistory *history)
+{
+  AppHistory h = *history;
+  int bad;
+
+  PetscFunctionBegin;
+  if (!h) PetscFunctionReturn(PETSC_SUCCESS);
+  *history = NULL;
+  bad = h->csv ? fclose(h->csv) : 0;
+  if (h->nrows) PetscCall(write_h5(h));
+  PetscCheck(!bad, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s/history.csv'", h->dir);
+  PetscCall(PetscFree(h->column));
+  PetscCall(PetscFree(h->row));
+  PetscCall(PetscFree(h->rows));
+  PetscCall(PetscFree(h));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

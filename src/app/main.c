@@ -1,0 +1,150 @@
+/*
+  main.c - the `frond` command.
+
+  frond run FILE [options]     run a scene
+  frond check FILE [options]   validate it, count, estimate
+  frond -help | -version
+*/
+#include "app.h"
+#include <hdf5.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char usage[] =
+    "Frond: fully resolved fluid-structure interaction (SPH fluid, ANCF beams, rigid bodies)\n"
+    "  frond run FILE [options]     run the scene of a YAML file\n"
+    "  frond check FILE [options]   validate it; print marker counts, memory, time step and cost\n"
+    "  frond -help                  every option (frond run FILE -help: with the scene's values)\n"
+    "  frond -version\n"
+    "An option -a_b_c of the command line is a_b_c: in the file, or c: nested under a: and b:, and wins over it.\n"
+    "Exit codes: 0 done, 1 wrong input, 2 the computation failed, 3 files, 128 + n: signal n.\n";
+
+static PetscErrorCode print_version(void)
+{
+  char petsc[128];
+  unsigned major, minor, release;
+
+  PetscFunctionBegin;
+  PetscCall(PetscGetVersion(petsc, sizeof(petsc)));
+  petsc[strcspn(petsc, ",\n")] = 0;
+  H5get_libversion(&major, &minor, &release);
+  printf("frond %s (%s; HDF5 %u.%u.%u; CUDA %s)\n", FROND_VERSION, petsc, major, minor, release, FROND_CUDA_BUILD ? "yes" : "no");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  PetscBool run, check, help, version;
+  const char *file;
+} Command;
+
+/* The words before the options. */
+static PetscErrorCode parse_command(int argc, char **argv, Command *c)
+{
+  const char *word = argc > 1 ? argv[1] : "-help";
+
+  PetscFunctionBegin;
+  memset(c, 0, sizeof(*c));
+  for (int i = 1; i < argc; i++) {
+    if (!strcmp(argv[i], "-help") || !strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) c->help = PETSC_TRUE;
+    if (!strcmp(argv[i], "-version") || !strcmp(argv[i], "--version")) c->version = PETSC_TRUE;
+  }
+  if (argc <= 1 || !strcmp(word, "help")) c->help = PETSC_TRUE;
+  c->run = (PetscBool)!strcmp(word, "run");
+  c->check = (PetscBool)!strcmp(word, "check");
+  if (!c->run && !c->check) {
+    PetscCheck(c->help || c->version, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "'%s' is no command; use frond run FILE or frond check FILE (frond -help)", word);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (argc > 2 && argv[2][0] != '-') c->file = argv[2];
+  PetscCheck(c->file || c->help, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "frond %s needs a scene file right after it: frond %s FILE [options]", word, word);
+  for (int i = 3; i < argc; i++)
+    PetscCheck(argv[i][0] == '-' || (argv[i - 1][0] == '-' && i > 3), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "'%s' is neither an option nor the value of one", argv[i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode check_ranks(void)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  PetscCheck(size == 1, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "this version runs on 1 MPI rank, not %d (it uses all cores of the rank through OpenMP)", (int)size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode run_scene(const Command *c, AppErrors *errors, int *exitcode)
+{
+  App app;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(&app, sizeof(app)));
+  app.errors = errors;
+  PetscCall(AppOptionsInsertFile(c->file));
+  PetscCall(AppSceneRead(&app.scene, c->file));
+  PetscCall(AppBuild(&app));
+  PetscCall(AppOptionsCheckUnused());
+  if (c->check)
+    PetscCall(AppCheck(&app));
+  else
+    PetscCall(AppRun(&app, exitcode));
+  PetscCall(AppDestroy(&app));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode execute(int argc, char **argv, AppErrors *errors, int *exitcode)
+{
+  Command c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-error_trace", &errors->trace, NULL));
+  PetscCall(check_ranks());
+  PetscCall(parse_command(argc, argv, &c));
+  if (c.version)
+    PetscCall(print_version());
+  else if (c.help) {
+    printf("%s", usage);
+    if (c.file) PetscCall(AppOptionsInsertFile(c.file));
+    PetscCall(AppHelp());
+  } else
+    PetscCall(run_scene(&c, errors, exitcode));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A misspelt option may be why another one is missing: add it to the line of a user's error. */
+static void add_misspelt(AppErrors *errors)
+{
+  char text[1600];
+  size_t n;
+
+  if (strstr(errors->message, "unknown option")) return;
+  if (AppOptionsUnused(PETSC_TRUE, sizeof(text), text) || !text[0]) return;
+  n = strlen(errors->message);
+  snprintf(errors->message + n, sizeof(errors->message) - n, " [%s]", text);
+}
+
+int main(int argc, char **argv)
+{
+  AppErrors errors = {PETSC_FALSE, "", ""};
+  int exitcode = 0, petscargc = 1;
+  PetscErrorCode ierr;
+  char **petscargv = argv;
+
+  if (MPI_Init(&argc, &argv)) return APP_EXIT_USER;
+  if (PetscInitialize(&petscargc, &petscargv, NULL, NULL)) return APP_EXIT_USER;
+  if (AppErrorInstall(&errors)) return APP_EXIT_USER;
+  ierr = PetscOptionsInsertArgs(NULL, argc - 1, argv + 1);
+  (void)PetscOptionsClearValue(NULL, "-help"); /* our own help comes first, see execute() */
+  if (!ierr) ierr = execute(argc, argv, &errors, &exitcode);
+  if (ierr) {
+    AppErrors first = errors;
+    if (!errors.trace) add_misspelt(&first);
+    exitcode = AppErrorReport(&first, ierr);
+  } else if (PetscFinalize())
+    exitcode = APP_EXIT_USER;
+  MPI_Finalize();
+  return exitcode;
+}

@@ -1,0 +1,319 @@
+/* scene.c - the options of a scene: domain, fluid, walls, beams, bodies, run and output. */
+#include "app.h"
+#include <ctype.h>
+#include <string.h>
+
+const char *const SceneFields[] = {"velocity", "density", "pressure", "group", "acceleration", NULL};
+const char *const SceneFaces[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
+
+static const char *const axes[] = {"x", "y", "z", NULL};
+static const char *const buoyancies[] = {"resolved", "archimedes", NULL};
+static const char *const pressures[] = {"hydrostatic", "zero", NULL};
+static const char *const ends[] = {"free", "pin", "clamp", NULL};
+static const char *const shapes[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule", NULL};
+static const char *const motions[] = {"fixed", "prescribed", "free", NULL};
+static const char *const faults[] = {"x", "v", "rho", NULL};
+
+#define COUNT(table) ((PetscInt)(sizeof(table) / sizeof((table)[0])))
+
+typedef struct {
+  PetscBool lo, hi, fluidlo, fluidhi, tend, dt, outevery, histevery, pressure;
+} SceneSet;
+
+/* scene_name defaults to the file's name. */
+static PetscErrorCode default_name(const char file[], char name[])
+{
+  const char *base = strrchr(file, '/');
+  size_t n;
+
+  PetscFunctionBegin;
+  base = base ? base + 1 : file;
+  n = strcspn(base, ".");
+  PetscCall(PetscStrncpy(name, n ? base : "scene", PetscMin(n ? n + 1 : 6, 33)));
+  for (char *c = name; *c; c++)
+    if (!isalnum((unsigned char)*c)) *c = '_';
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_domain(AppScene *s, SceneSet *set)
+{
+  PetscInt buoyancy = s->buoyancy, pressure = s->pressure;
+  char key[6][32];
+  AppOpt wall[6];
+  const AppOpt opt[] = {
+      {OPT_VEC, "gravity", "Acceleration of gravity, m/s^2", s->gravity, NULL, NULL},
+      {OPT_CHOICE, "buoyancy", "Gravity on the fluid: resolved as a body force, or left out with weights reduced by Archimedes",
+       &buoyancy, buoyancies, NULL},
+      {OPT_VEC, "domain_lo", "Lower corner of the domain, m (needed with fluid)", s->lo, NULL, &set->lo},
+      {OPT_VEC, "domain_hi", "Upper corner of the domain, m (needed with fluid)", s->hi, NULL, &set->hi},
+      {OPT_SUBSET, "domain_periodic", "Periodic axes", s->periodic, axes, NULL},
+      {OPT_SUBSET, "walls", "Faces of the domain that are walls", s->wall, SceneFaces, NULL},
+      {OPT_BOOL, "fluid", "Whether there is a fluid", &s->fluid, NULL, NULL},
+      {OPT_VEC, "fluid_lo", "Lower corner of the box filled with fluid, m (default: the domain's)", s->fluidlo, NULL,
+       &set->fluidlo},
+      {OPT_VEC, "fluid_hi", "Upper corner of the box filled with fluid, m (default: the domain's)", s->fluidhi, NULL,
+       &set->fluidhi},
+      {OPT_VEC, "fluid_velocity", "Initial velocity of the fluid, m/s", s->fluidvelocity, NULL, NULL},
+      {OPT_CHOICE, "fluid_pressure", "Initial pressure (default: hydrostatic when gravity is resolved)", &pressure, pressures,
+       &set->pressure},
+  };
+
+  PetscFunctionBegin;
+  PetscCall(AppOptionsRead(NULL, "Scene: domain and fluid", COUNT(opt), opt));
+  s->buoyancy = (SceneBuoyancy)buoyancy;
+  s->pressure = (ScenePressure)pressure;
+  if (!set->pressure) s->pressure = s->buoyancy == BUOYANCY_RESOLVED ? PRESSURE_HYDROSTATIC : PRESSURE_ZERO;
+  if (!set->fluidlo) PetscCall(PetscArraycpy(s->fluidlo, s->lo, 3));
+  if (!set->fluidhi) PetscCall(PetscArraycpy(s->fluidhi, s->hi, 3));
+  for (PetscInt i = 0; i < 6; i++) {
+    PetscCall(PetscSNPrintf(key[i], sizeof(key[i]), "%s_velocity", SceneFaces[i]));
+    wall[i] = (AppOpt){OPT_VEC, key[i], "Velocity of this wall, along itself, m/s", s->wallvelocity[i], NULL, NULL};
+  }
+  PetscCall(AppOptionsRead("wall_", "Scene: walls", 6, wall));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_fault(AppScene *s, const char text[])
+{
+  char copy[64], *part[3], *end;
+
+  PetscFunctionBegin;
+  s->faultstep = -1;
+  if (!text[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrncpy(copy, text, sizeof(copy)));
+  part[0] = strtok(copy, ",");
+  part[1] = strtok(NULL, ",");
+  part[2] = strtok(NULL, ",");
+  PetscCheck(part[0] && part[1] && part[2], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: '%s' is not field,marker,step",
+             text);
+  for (s->faultfield = 0; faults[s->faultfield] && strcmp(faults[s->faultfield], part[0]);) s->faultfield++;
+  PetscCheck(faults[s->faultfield], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: field '%s' is none of x, v, rho", part[0]);
+  s->faultmarker = (PetscInt)strtol(part[1], &end, 10);
+  PetscCheck(!*end && s->faultmarker >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: marker '%s' must be 0 or more",
+             part[1]);
+  s->faultstep = (PetscInt)strtol(part[2], &end, 10);
+  PetscCheck(!*end && s->faultstep >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: step '%s' must be 0 or more", part[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_run(AppScene *s, SceneSet *set)
+{
+  char name[PETSC_MAX_PATH_LEN], fault[PETSC_MAX_PATH_LEN] = "";
+  const AppOpt opt[] = {
+      {OPT_STRING, "scene_name", "Name of the scene: letters, digits, '_' (default: the file's name)", name, NULL, NULL},
+      {OPT_REAL, "time_end", "Time at which the run ends, s (needed)", &s->tend, NULL, &set->tend},
+      {OPT_REAL, "time_step", "Time step, s (needed without fluid; with fluid: sph_dt)", &s->dt, NULL, &set->dt},
+      {OPT_STRING, "output_dir", "Folder of the results (default: out_<scene_name>)", s->outdir, NULL, NULL},
+      {OPT_BOOL, "output_overwrite", "Replace the results of an earlier run in output_dir", &s->overwrite, NULL, NULL},
+      {OPT_REAL, "output_every", "Time between frames, s; 0: every step (default: time_end/40)", &s->outevery, NULL,
+       &set->outevery},
+      {OPT_REAL, "history_every", "Time between rows of the history, s; 0: every step (default: time_end/500)", &s->histevery,
+       NULL, &set->histevery},
+      {OPT_SUBSET, "output_fields", "Fields of a frame (default: velocity, density, pressure, group)", s->field, SceneFields,
+       NULL},
+      {OPT_REAL, "progress_every", "Wall time between progress lines, s; 0: none", &s->progressevery, NULL, NULL},
+      {OPT_STRING, "fault_nan", "For tests: put NaN in field,marker before step (x|v|rho,number,number)", fault, NULL, NULL},
+  };
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(name, s->name, sizeof(name)));
+  PetscCall(AppOptionsRead(NULL, "Scene: run and output", COUNT(opt), opt));
+  PetscCall(AppNameCheck("scene_name", name));
+  PetscCall(PetscStrncpy(s->name, name, sizeof(s->name)));
+  if (!s->outdir[0]) PetscCall(PetscSNPrintf(s->outdir, sizeof(s->outdir), "out_%s", s->name));
+  if (!set->outevery) s->outevery = s->tend / 40;
+  if (!set->histevery) s->histevery = s->tend / 500;
+  PetscCall(read_fault(s, fault));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_beam(const char prefix[], const char title[], AncfBeamSpec *spec, PetscBool set[2])
+{
+  PetscInt end0 = spec->end0, end1 = spec->end1;
+  PetscBool stiff[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
+  PetscReal *derived[3] = {&spec->EA, &spec->EI, &spec->rhoA};
+  const AppOpt opt[] = {
+      {OPT_VEC, "start", "First end of the axis, m (needed)", spec->start, NULL, &set[0]},
+      {OPT_VEC, "end", "Last end of the axis, m (needed)", spec->end, NULL, &set[1]},
+      {OPT_INT, "elements", "Number of ANCF elements", &spec->elements, NULL, NULL},
+      {OPT_REAL, "diameter", "Diameter of the circular section, m", &spec->diameter, NULL, NULL},
+      {OPT_REAL, "density", "Density of the material, kg/m^3", &spec->density, NULL, NULL},
+      {OPT_REAL, "young", "Young's modulus E, Pa", &spec->young, NULL, NULL},
+      {OPT_REAL, "EA", "Axial stiffness in place of E and diameter, N (-1: derived)", &spec->EA, NULL, &stiff[0]},
+      {OPT_REAL, "EI", "Bending stiffness in place of E and diameter, N m^2 (-1: derived)", &spec->EI, NULL, &stiff[1]},
+      {OPT_REAL, "rhoA", "Mass per length in place of density and diameter, kg/m (-1: derived)", &spec->rhoA, NULL, &stiff[2]},
+      {OPT_VEC, "velocity", "Initial velocity, m/s", spec->velocity, NULL, NULL},
+      {OPT_CHOICE, "end0", "Support of the first end", &end0, ends, NULL},
+      {OPT_CHOICE, "end1", "Support of the last end", &end1, ends, NULL},
+  };
+
+  PetscFunctionBegin;
+  PetscCall(AppOptionsRead(prefix, title, COUNT(opt), opt));
+  for (PetscInt i = 0; i < 3; i++)
+    PetscCheck(!stiff[i] || *derived[i] > 0 || *derived[i] == -1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "%s%s = %g must be positive", prefix, opt[6 + i].key, (double)*derived[i]);
+  spec->end0 = (AncfEnd)end0;
+  spec->end1 = (AncfEnd)end1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_body(const char prefix[], const char title[], RigidBodySpec *spec, PetscBool set[2])
+{
+  PetscInt shape = spec->shape, motion = spec->motion;
+  const AppOpt opt[] = {
+      {OPT_CHOICE, "shape", "Shape", &shape, shapes, NULL},
+      {OPT_CHOICE, "motion", "Motion", &motion, motions, NULL},
+      {OPT_VEC, "size", "sphere: radius,0,0; box: edges; cylinder, capsule: radius,length,0; ellipsoid: semi-axes; m (needed)",
+       spec->size, NULL, &set[0]},
+      {OPT_REAL, "density", "Density, kg/m^3", &spec->density, NULL, NULL},
+      {OPT_VEC, "position", "Centre, m (needed)", spec->position, NULL, &set[1]},
+      {OPT_AXISANGLE, "axisangle", "Initial orientation: axis x,y,z and angle, rad", spec->axisangle, NULL, NULL},
+      {OPT_VEC, "velocity", "Velocity, m/s", spec->velocity, NULL, NULL},
+      {OPT_VEC, "omega", "Angular velocity in the space frame, rad/s", spec->omega, NULL, NULL},
+      {OPT_REAL, "mass", "Mass in place of density, kg (-1: derived)", &spec->mass, NULL, NULL},
+      {OPT_VEC, "inertia", "Principal moments in place of density, kg m^2 (-1: derived)", spec->inertia, NULL, NULL},
+  };
+
+  PetscFunctionBegin;
+  PetscCall(AppOptionsRead(prefix, title, COUNT(opt), opt));
+  spec->shape = (RigidShape)shape;
+  spec->motion = (RigidMotion)motion;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_structures(AppScene *s)
+{
+  AppNames beams = {0, NULL}, bodies = {0, NULL};
+  AncfBeamSpec beam;
+  RigidBodySpec body;
+  PetscBool beamset[2] = {PETSC_FALSE, PETSC_FALSE}, bodyset[2] = {PETSC_FALSE, PETSC_FALSE}, help;
+  char prefix[128], title[128];
+  const AppOpt opt[] = {
+      {OPT_NAMES, "beams", "Names of the beams, separated by commas", &beams, NULL, NULL},
+      {OPT_NAMES, "bodies", "Names of the rigid bodies, separated by commas", &bodies, NULL, NULL},
+  };
+
+  PetscFunctionBegin;
+  PetscCall(AppOptionsRead(NULL, "Scene: structures", COUNT(opt), opt));
+  PetscCall(PetscOptionsHasHelp(NULL, &help));
+  PetscCall(AncfBeamSpecInit(&beam));
+  PetscCall(RigidBodySpecInit(&body));
+  if (beams.n || help) PetscCall(read_beam("beam_", "Beams: the same for all; -beam_<name>_... for one", &beam, beamset));
+  if (bodies.n || help) PetscCall(read_body("body_", "Rigid bodies: the same for all; -body_<name>_... for one", &body, bodyset));
+  s->nbeams = beams.n;
+  s->nbodies = bodies.n;
+  PetscCall(PetscCalloc2(beams.n, &s->beams, bodies.n, &s->bodies));
+  for (PetscInt i = 0; i < beams.n; i++) {
+    PetscBool set[2] = {beamset[0], beamset[1]};
+    s->beams[i].spec = beam;
+    PetscCall(PetscStrncpy(s->beams[i].name, beams.name[i], APP_NAME_LEN));
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "beam_%s_", beams.name[i]));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Beam '%s'", beams.name[i]));
+    PetscCall(read_beam(prefix, title, &s->beams[i].spec, set));
+    PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s' needs %s%s", beams.name[i], prefix,
+               set[0] ? "end" : "start");
+  }
+  for (PetscInt i = 0; i < bodies.n; i++) {
+    PetscBool set[2] = {bodyset[0], bodyset[1]};
+    s->bodies[i].spec = body;
+    PetscCall(PetscStrncpy(s->bodies[i].name, bodies.name[i], APP_NAME_LEN));
+    for (PetscInt j = 0; j < beams.n; j++)
+      PetscCheck(strcasecmp(beams.name[j], bodies.name[i]), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+                 "bodies: the name '%s' is a beam's already", bodies.name[i]);
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "body_%s_", bodies.name[i]));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Body '%s'", bodies.name[i]));
+    PetscCall(read_body(prefix, title, &s->bodies[i].spec, set));
+    PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "body '%s' needs %s%s", bodies.name[i], prefix,
+               set[0] ? "position" : "size");
+  }
+  PetscCall(PetscFree(beams.name));
+  PetscCall(PetscFree(bodies.name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode check_given(const AppScene *s, const SceneSet *set)
+{
+  PetscFunctionBegin;
+  PetscCheck(set->tend, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "time_end is needed: the time at which the run ends, s");
+  PetscCheck(s->tend > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "time_end = %g s must be positive", (double)s->tend);
+  PetscCheck(s->outevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "output_every = %g s must be 0 (every step) or more",
+             (double)s->outevery);
+  PetscCheck(s->histevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "history_every = %g s must be 0 (every step) or more",
+             (double)s->histevery);
+  PetscCheck(s->progressevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "progress_every = %g s must be 0 (never) or more",
+             (double)s->progressevery);
+  PetscCheck(s->fluid || s->nbeams || s->nbodies, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "nothing to simulate: fluid is false, and neither beams nor bodies are listed");
+  if (s->fluid) {
+    PetscCheck(set->lo && set->hi, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "%s is needed: a corner of the domain, m (or set fluid to false)", set->lo ? "domain_hi" : "domain_lo");
+    PetscCheck(!set->dt, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "time_step is for scenes without fluid; with fluid set sph_dt or sph_cfl");
+  } else {
+    PetscCheck(set->dt, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "time_step is needed in a scene without fluid, s");
+    PetscCheck(s->dt > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "time_step = %g s must be positive", (double)s->dt);
+    PetscCheck(s->faultstep < 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan needs a fluid");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Read a scene from the options database; file gives the default name. */
+PetscErrorCode AppSceneRead(AppScene *s, const char file[])
+{
+  SceneSet set = {0};
+  PetscBool help;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(s, sizeof(*s)));
+  s->fluid = PETSC_TRUE;
+  s->progressevery = 1;
+  for (PetscInt i = 0; i <= FIELD_GROUP; i++) s->field[i] = PETSC_TRUE;
+  PetscCall(default_name(file, s->name));
+  PetscCall(read_domain(s, &set));
+  PetscCall(read_structures(s));
+  PetscCall(read_run(s, &set));
+  PetscCall(PetscOptionsHasHelp(NULL, &help));
+  if (!help) PetscCall(check_given(s, &set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What can be judged once the dimension of the fluid is known. */
+PetscErrorCode AppSceneCheck(const AppScene *s, PetscInt dim)
+{
+  PetscFunctionBegin;
+  for (PetscInt a = 0; a < dim; a++) {
+    PetscCheck(s->hi[a] > s->lo[a], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "domain_hi %s = %g m must lie above domain_lo = %g m", axes[a], (double)s->hi[a], (double)s->lo[a]);
+    PetscCheck(s->fluidhi[a] > s->fluidlo[a], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "fluid_hi %s = %g m must lie above fluid_lo = %g m: the domain has no fluid", axes[a], (double)s->fluidhi[a],
+               (double)s->fluidlo[a]);
+    PetscCheck(s->fluidlo[a] >= s->lo[a] && s->fluidhi[a] <= s->hi[a], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "the fluid box (%g to %g m along %s) must lie inside the domain (%g to %g m)", (double)s->fluidlo[a],
+               (double)s->fluidhi[a], axes[a], (double)s->lo[a], (double)s->hi[a]);
+  }
+  for (PetscInt i = 0; i < 6; i++) {
+    const PetscReal *v = s->wallvelocity[i];
+    PetscBool moves = (PetscBool)(v[0] != 0 || v[1] != 0 || v[2] != 0);
+    PetscCheck(!s->wall[i] || i / 2 < dim, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "walls: %s has no meaning in a 2D scene",
+               SceneFaces[i]);
+    PetscCheck(!s->wall[i] || !s->periodic[i / 2], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "walls: %s is on axis %s, which is periodic", SceneFaces[i], axes[i / 2]);
+    PetscCheck(!moves || s->wall[i], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "wall_%s_velocity is set but walls does not list %s",
+               SceneFaces[i], SceneFaces[i]);
+    PetscCheck(v[i / 2] == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "wall_%s_velocity = %g,%g,%g: a wall moves along itself only, its %s component must be 0", SceneFaces[i],
+               (double)v[0], (double)v[1], (double)v[2], axes[i / 2]);
+  }
+  PetscCheck(dim == 3 || !s->periodic[2], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "domain_periodic: z has no meaning in a 2D scene");
+  PetscCheck(dim == 3 || s->gravity[2] == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "gravity: its z component %g must be 0 in a 2D scene", (double)s->gravity[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppSceneDestroy(AppScene *s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(s->beams, s->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
