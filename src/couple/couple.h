@@ -13,7 +13,7 @@
 #include "rigid.h"
 #include "sph.h"
 
-typedef struct _p_Couple        *Couple;
+typedef struct _p_Couple *Couple;
 typedef struct _p_CoupleSurface *CoupleSurface;
 
 /* What a transfer of marker forces lost: marker sums minus generalised sums. Moments about the origin. */
@@ -25,34 +25,52 @@ typedef struct {
 
 typedef struct {
   /* n markers: rest positions x (n x 3), volumes (n), depths (n); borrowed from the surface. */
-  PetscErrorCode (*getmarkers)(CoupleSurface, PetscInt *n, const PetscReal **x, const PetscReal **volume, const PetscReal **depth);
+  PetscErrorCode (*getmarkers)(CoupleSurface, PetscInt *n, const PetscReal **x, const PetscReal **volume,
+                               const PetscReal **depth);
   /* Marker state extrapolated by dt from the structure's current time with its current velocity and acceleration: n x 3 each. */
   PetscErrorCode (*kinematics)(CoupleSurface, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a);
-  /* Take the marker forces f (n x 3, N), held over the next advance; fill the audit. */
+  /* Forget the loads of the last step. Called for every surface before any applyforces. */
+  PetscErrorCode (*zeroloads)(CoupleSurface);
+  /*
+    Take the marker forces f (n x 3, N), held over the next advance, which act on the state of the last kinematics call; fill the
+    audit's *_lost and twist (the totals are filled by the caller).
+  */
   PetscErrorCode (*applyforces)(CoupleSurface, const PetscReal *f, CoupleAudit *audit);
   /* Integrate to time t. Surfaces that share a solver share the call: the solver advances once. */
   PetscErrorCode (*advance)(CoupleSurface, PetscReal t);
+  /* Optional: linear momentum p (kg m/s) and the forces now (N) that do not come from the fluid, of weight and of supports. */
+  PetscErrorCode (*momentum)(CoupleSurface, PetscReal p[3], PetscReal weight[3], PetscReal support[3]);
+  /* Optional. */
   PetscErrorCode (*view)(CoupleSurface, PetscViewer);
+  /* Optional: free the context. */
   PetscErrorCode (*destroy)(CoupleSurface);
 } CoupleSurfaceOps;
 
-FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx, CoupleSurface *surface);
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx,
+                                                CoupleSurface *surface);
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetContext(CoupleSurface surface, void *ctx);
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name);
+/* A held surface (wall, fixed body) takes up any force: the balance counts it as an impulse of walls. */
+FROND_EXTERN PetscErrorCode CoupleSurfaceSetHeld(CoupleSurface surface, PetscBool held);
 FROND_EXTERN PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface);
 
 /* Beam `beam` of ancf, marked by disks of BCE markers dp apart (lines across the thickness in 2D). */
-FROND_EXTERN PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, PetscReal dp, PetscReal depthmax, CoupleSurface *surface);
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, PetscReal dp, PetscReal depthmax,
+                                                    CoupleSurface *surface);
 /* Body `body` of rigid. */
-FROND_EXTERN PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax, CoupleSurface *surface);
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax,
+                                                     CoupleSurface *surface);
 /* Markers moving together with a constant velocity (m/s), at rest for zero. Copies the arrays. */
-FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3], CoupleSurface *surface);
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscInt n, const PetscReal *x,
+                                                    const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3],
+                                                    CoupleSurface *surface);
 
 FROND_EXTERN PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple);
 FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
-FROND_EXTERN PetscErrorCode CoupleSetAncf(Couple couple, Ancf ancf);
-FROND_EXTERN PetscErrorCode CoupleSetRigid(Couple couple, Rigid rigid);
+/* The couple destroys the surfaces it was given. */
 FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
+/* Upper bound on the step, s; PETSC_DECIDE for none. */
+FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax);
 FROND_EXTERN PetscErrorCode CoupleSetFromOptions(Couple couple);
 /* Gives every surface's markers to the fluid and sets the fluid up. Add the fluid markers before. */
 FROND_EXTERN PetscErrorCode CoupleSetUp(Couple couple);

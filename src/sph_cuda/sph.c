@@ -7,7 +7,7 @@ PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Moti
 static PetscErrorCode SphRegisterEvents(void)
 {
   static PetscBool done = PETSC_FALSE;
-  PetscClassId     classid;
+  PetscClassId classid;
 
   PetscFunctionBegin;
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
@@ -30,12 +30,13 @@ static PetscErrorCode SphRegisterEvents(void)
 @*/
 PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
 {
-  Sph         sph;
+  Sph sph;
   PetscMPIInt size;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCheck(size == 1, comm, PETSC_ERR_SUP, "the fluid runs on 1 MPI rank, the communicator has %d: use threads (OMP_NUM_THREADS) instead", (int)size);
+  PetscCheck(size == 1, comm, PETSC_ERR_SUP,
+             "the fluid runs on 1 MPI rank, the communicator has %d: use threads (OMP_NUM_THREADS) instead", (int)size);
   PetscCall(SphRegisterEvents());
   PetscCall(PetscNew(&sph));
   sph->comm = comm;
@@ -130,19 +131,27 @@ static PetscErrorCode CheckParameters(Sph sph)
   SphParams *p = &sph->par;
 
   PetscFunctionBegin;
-  PetscCheck(p->dp > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dp = %g: the marker spacing must be given and > 0 (m)", (double)p->dp);
+  PetscCheck(p->dp > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dp = %g: the marker spacing must be given and > 0 (m)",
+             (double)p->dp);
   if (!sph->hset) p->h = sph->hratio * p->dp;
-  PetscCheck(p->h >= p->dp * (1.0 - 1e-12), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_h = %g is %g sph_dp: must be at least 1 sph_dp, or the kernel sees too few neighbours", (double)p->h, (double)(p->h / p->dp));
-  PetscCheck(p->h <= p->dp * 4.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_h = %g is %g sph_dp: must be at most 4 sph_dp", (double)p->h, (double)(p->h / p->dp));
-  PetscCheck(sph->csset || sph->vmaxset, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "sph_max_speed: the expected maximum speed (m/s, > 0) must be given, or sph_sound_speed");
+  PetscCheck(p->h >= p->dp * (1.0 - 1e-12), sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_h = %g is %g sph_dp: must be at least 1 sph_dp, or the kernel sees too few neighbours", (double)p->h,
+             (double)(p->h / p->dp));
+  PetscCheck(p->h <= p->dp * 4.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_h = %g is %g sph_dp: must be at most 4 sph_dp",
+             (double)p->h, (double)(p->h / p->dp));
+  PetscCheck(sph->csset || sph->vmaxset, sph->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "sph_max_speed: the expected maximum speed (m/s, > 0) must be given, or sph_sound_speed");
   if (!sph->csset) p->cs = 10.0 * p->vmax;
   if (!sph->vmaxset) p->vmax = 0.1 * p->cs;
   p->mupair = p->viscositylattice ? p->mu / SphViscosityLattice(p) : p->mu;
   p->B = p->cs * p->cs * p->rho0 / p->gamma;
   PetscCheck(sph->domainset, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "domain_lo, domain_hi: the domain must be given");
   for (int k = 0; k < p->dim; k++) {
-    PetscCheck(p->hi[k] > p->lo[k], sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "domain_hi[%d] = %g: must be > domain_lo[%d] = %g", k, (double)p->hi[k], k, (double)p->lo[k]);
-    PetscCheck(!p->periodic[k] || p->hi[k] - p->lo[k] >= 2.0 * p->h * 1.05, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "domain_hi[%d] - domain_lo[%d] = %g: a periodic side must be at least 2.1 sph_h = %g m long", k, k, (double)(p->hi[k] - p->lo[k]), (double)(2.1 * p->h));
+    PetscCheck(p->hi[k] > p->lo[k], sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "domain_hi[%d] = %g: must be > domain_lo[%d] = %g", k,
+               (double)p->hi[k], k, (double)p->lo[k]);
+    PetscCheck(!p->periodic[k] || p->hi[k] - p->lo[k] >= 2.0 * p->h * 1.05, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "domain_hi[%d] - domain_lo[%d] = %g: a periodic side must be at least 2.1 sph_h = %g m long", k, k,
+               (double)(p->hi[k] - p->lo[k]), (double)(2.1 * p->h));
   }
   PetscCheck(sph->nfluid > 0, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "the domain holds no fluid: no fluid marker was added");
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -161,7 +170,9 @@ PetscErrorCode SphSetUp(Sph sph)
   PetscCall(ChooseBackend(sph));
   for (PetscInt i = 0; i < sph->n; i++) {
     if (sph->group[i] == -1) { /* SphAddFluid left the pressure here, and the volume in m */
-      PetscCheck(sph->st.s[i] > -0.5 * sph->par.B, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "initial pressure %g Pa of marker %" PetscInt_FMT ": must be > %g Pa for this sound speed", sph->st.s[i], i, (double)(-0.5 * sph->par.B));
+      PetscCheck(sph->st.s[i] > -0.5 * sph->par.B, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+                 "initial pressure %g Pa of marker %" PetscInt_FMT ": must be > %g Pa for this sound speed", sph->st.s[i], i,
+                 (double)(-0.5 * sph->par.B));
       sph->st.s[i] = expm1(log1p(sph->st.s[i] / sph->par.B) / sph->par.gamma);
       sph->m[i] = sph->par.rho0 * pow(sph->par.dp, (double)sph->par.dim);
     } else {
@@ -183,10 +194,14 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
 
   PetscFunctionBegin;
   if (dt <= limit * (1.0 + 1e-9)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(sph->step > 0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dt = %g s: must be at most the stable step %g s (%s limit, sph_cfl = %g)", (double)dt, (double)limit, which, (double)sph->par.cfl);
+  PetscCheck(sph->step > 0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_dt = %g s: must be at most the stable step %g s (%s limit, sph_cfl = %g)", (double)dt, (double)limit, which,
+             (double)sph->par.cfl);
   if (!sph->fixedwarned) {
     sph->fixedwarned = PETSC_TRUE;
-    PetscCall(PetscFPrintf(sph->comm, PETSC_STDERR, "frond: warning: sph_dt = %g s exceeds the stable step %g s (%s limit) at step %" PetscInt_FMT "\n", (double)dt, (double)limit, which, sph->step));
+    PetscCall(PetscFPrintf(sph->comm, PETSC_STDERR,
+                           "frond: warning: sph_dt = %g s exceeds the stable step %g s (%s limit) at step %" PetscInt_FMT "\n",
+                           (double)dt, (double)limit, which, sph->step));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -200,8 +215,8 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
 PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
 {
   const SphParams *p = &sph->par;
-  PetscReal        vmax, amax, limit;
-  const char      *which = "acoustic";
+  PetscReal vmax, amax, limit;
+  const char *which = "acoustic";
 
   PetscFunctionBegin;
   PetscCall((*sph->ops->limits)(sph, &vmax, &amax));
@@ -214,7 +229,9 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
     limit = p->cfl * 0.5 * p->h * p->h * p->rho0 / p->mu;
     which = "viscous";
   }
-  PetscCheck(PetscIsNormalReal(limit), sph->comm, PETSC_ERR_FP, "non-finite velocity or acceleration at step %" PetscInt_FMT ", time %g s: the stable step is %g s", sph->step, (double)sph->t, (double)limit);
+  PetscCheck(PetscIsNormalReal(limit), sph->comm, PETSC_ERR_FP,
+             "non-finite velocity or acceleration at step %" PetscInt_FMT ", time %g s: the stable step is %g s", sph->step,
+             (double)sph->t, (double)limit);
   *dt = limit;
   if (p->dtfixed > 0.0) {
     PetscCall(FixedTimeStep(sph, limit, which));
@@ -282,7 +299,8 @@ PetscErrorCode SphStepEnd(Sph sph)
 PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
   PetscFunctionBegin;
-  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
   PetscCall(PetscLogEventBegin(SPH_Motion, 0, 0, 0, 0));
   PetscCall((*sph->ops->motion)(sph, group, x, v, a));
   PetscCall(PetscLogEventEnd(SPH_Motion, 0, 0, 0, 0));
@@ -292,7 +310,8 @@ PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x,
 PetscErrorCode SphGetBoundaryForce(Sph sph, PetscInt group, PetscReal *f)
 {
   PetscFunctionBegin;
-  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
   PetscCall((*sph->ops->force)(sph, group, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

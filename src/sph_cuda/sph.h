@@ -18,7 +18,7 @@
 typedef struct _p_Sph *Sph;
 
 typedef const char *SphType;
-#define SPHCPU  "cpu"
+#define SPHCPU "cpu"
 #define SPHCUDA "cuda"
 #define SPHAUTO "auto" /* cuda when a device is there, else cpu, and says so */
 
@@ -83,7 +83,8 @@ FROND_EXTERN PetscErrorCode SphGetSupport(Sph sph, PetscReal *support);
   surface). Marker masses are rho0 dp^dim for fluid and rho0 volume for boundary markers.
 */
 FROND_EXTERN PetscErrorCode SphAddFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *p);
-FROND_EXTERN PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *volume, const PetscReal *depth, PetscInt *group);
+FROND_EXTERN PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *volume,
+                                           const PetscReal *depth, PetscInt *group);
 FROND_EXTERN PetscErrorCode SphGetCounts(Sph sph, PetscInt *fluid, PetscInt *boundary, PetscInt *left);
 
 /* The largest stable time step now (acoustic, force and viscous limits), or the fixed one after checking it. */
@@ -93,16 +94,17 @@ FROND_EXTERN PetscErrorCode SphStepEnd(Sph sph);
 FROND_EXTERN PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step);
 
 /* State of a group's markers: x (m), v (m/s), a (m/s^2; NULL for zero), n x 3, in the order of SphAddBoundary. */
-FROND_EXTERN PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a);
+FROND_EXTERN PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v,
+                                                 const PetscReal *a);
 /* Fluid forces on a group's markers from the last right-hand side of Eq. 5, times the marker mass: n x 3, N. */
 FROND_EXTERN PetscErrorCode SphGetBoundaryForce(Sph sph, PetscInt group, PetscReal *f);
 
 /* Fields of all markers in the order added (fluid first, then groups). Any pointer may be NULL. */
 typedef struct {
-  PetscReal *x, *v;        /* n x 3, m, m/s */
-  PetscReal *a;            /* n x 3, m/s^2, last right-hand side of Eq. 5 */
-  PetscReal *rho, *p;      /* n, kg/m^3, Pa */
-  PetscInt  *group;        /* n, -1 fluid, -2 left the domain, else the boundary group */
+  PetscReal *x, *v;   /* n x 3, m, m/s */
+  PetscReal *a;       /* n x 3, m/s^2, last right-hand side of Eq. 5 */
+  PetscReal *rho, *p; /* n, kg/m^3, Pa */
+  PetscInt *group;    /* n, -1 fluid, -2 left the domain, else the boundary group */
 } SphFields;
 FROND_EXTERN PetscErrorCode SphGetFields(Sph sph, const SphFields *f);
 /* Overwrite fields (x, v, rho as given, others ignored); for initial conditions, restart and fault tests. */

@@ -14,14 +14,18 @@ static PetscInt FirstBad(Sph sph, const double *a)
 
 PetscErrorCode SphCheckFinite(Sph sph)
 {
-  const double *fields[] = {sph->st.x[0], sph->st.x[1], sph->st.x[2], sph->st.v[0], sph->st.v[1], sph->st.v[2], sph->st.s, sph->rate.a[0], sph->rate.a[1], sph->rate.a[2]};
-  const char   *names[] = {"position x", "position y", "position z", "velocity x", "velocity y", "velocity z", "density", "acceleration x", "acceleration y", "acceleration z"};
+  const double *fields[] = {sph->st.x[0], sph->st.x[1], sph->st.x[2],   sph->st.v[0],   sph->st.v[1],
+                            sph->st.v[2], sph->st.s,    sph->rate.a[0], sph->rate.a[1], sph->rate.a[2]};
+  const char *names[] = {"position x", "position y", "position z",     "velocity x",     "velocity y",
+                         "velocity z", "density",    "acceleration x", "acceleration y", "acceleration z"};
 
   PetscFunctionBegin;
   for (int f = 0; f < 10; f++) {
     const PetscInt bad = FirstBad(sph, fields[f]);
     if (bad >= 0)
-      SETERRQ(sph->comm, PETSC_ERR_FP, "non-finite %s of marker %" PetscInt_FMT " (%s) at step %" PetscInt_FMT ", time %g s: every value must be finite", names[f], bad, bad < sph->nfluid ? "fluid" : "boundary", sph->step, (double)sph->t);
+      SETERRQ(sph->comm, PETSC_ERR_FP,
+              "non-finite %s of marker %" PetscInt_FMT " (%s) at step %" PetscInt_FMT ", time %g s: every value must be finite",
+              names[f], bad, bad < sph->nfluid ? "fluid" : "boundary", sph->step, (double)sph->t);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -64,8 +64,9 @@ static PetscErrorCode Append(Sph sph, PetscInt n, const PetscReal *x, const Pets
   for (PetscInt j = 0; j < n; j++) {
     const PetscInt i = sph->n + j;
     for (int k = 0; k < sph->par.dim; k++) {
-      PetscCheck(!PetscIsInfOrNanReal(x[3 * j + k]) && !(v && PetscIsInfOrNanReal(v[3 * j + k])), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "marker %" PetscInt_FMT ": position %g and velocity %g along axis %d must be finite", i, (double)x[3 * j + k],
-                 v ? (double)v[3 * j + k] : 0.0, k);
+      PetscCheck(!PetscIsInfOrNanReal(x[3 * j + k]) && !(v && PetscIsInfOrNanReal(v[3 * j + k])), sph->comm,
+                 PETSC_ERR_ARG_OUTOFRANGE, "marker %" PetscInt_FMT ": position %g and velocity %g along axis %d must be finite",
+                 i, (double)x[3 * j + k], v ? (double)v[3 * j + k] : 0.0, k);
       sph->st.x[k][i] = x[3 * j + k];
       sph->st.v[k][i] = v ? v[3 * j + k] : 0.0;
     }
@@ -95,9 +96,11 @@ PetscErrorCode SphAddFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscR
 }
 
 /*@
-  SphAddBoundary - Add a group of n boundary markers; volume (n, m^3) and depth below the surface (n, m) of each; returns its number.
+  SphAddBoundary - Add a group of n boundary markers; volume (n, m^3) and depth below the surface (n, m) of each; returns its
+number.
 @*/
-PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *volume, const PetscReal *depth, PetscInt *group)
+PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *volume,
+                              const PetscReal *depth, PetscInt *group)
 {
   const PetscInt first = sph->n;
 
@@ -111,7 +114,8 @@ PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const Pet
   }
   PetscCall(Append(sph, n, x, v, (int)sph->ngroups));
   for (PetscInt j = 0; j < n; j++) {
-    PetscCheck(volume[j] > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "boundary marker %" PetscInt_FMT ": its volume %g must be > 0", j, (double)volume[j]);
+    PetscCheck(volume[j] > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "boundary marker %" PetscInt_FMT ": its volume %g must be > 0", j, (double)volume[j]);
     sph->m[first + j] = volume[j]; /* turned into a mass by SphSetUp() */
     sph->wallratio[first + j] = depth ? depth[j] : 0.0;
   }
@@ -178,7 +182,7 @@ static double InternalEnergy(const SphParams *p, double s)
 PetscErrorCode SphGetSums(Sph sph, SphSums *out)
 {
   const SphParams *p = &sph->par;
-  SphSums          t = {0};
+  SphSums t = {0};
 
   PetscFunctionBegin;
   PetscCall((*sph->ops->pull)(sph));
@@ -205,7 +209,7 @@ PetscErrorCode SphGetSums(Sph sph, SphSums *out)
 PetscErrorCode SphSample(Sph sph, PetscInt np, const PetscReal *x, PetscReal *v, PetscReal *pr)
 {
   const SphParams *p = &sph->par;
-  const double     r2max = 4.0 * p->h * p->h;
+  const double r2max = 4.0 * p->h * p->h;
 
   PetscFunctionBegin;
   PetscCall((*sph->ops->pull)(sph));
@@ -238,7 +242,8 @@ PetscErrorCode SphGetWork(Sph sph, PetscReal *bytes, PetscReal *evaluations)
   const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
 
   PetscFunctionBegin;
-  /* state, saved state, rates, boundary acceleration, mass, ratio, search reference, spare: doubles; prepared quantities: 13 reals; 3 ints, sort keys */
+  /* state, saved state, rates, boundary acceleration, mass, ratio, search reference, spare: doubles; prepared quantities: 13
+   * reals; 3 ints, sort keys */
   if (bytes) *bytes = (PetscReal)sph->n * (PetscReal)((7 + 7 + 7 + 3 + 2 + 3 + 1) * sizeof(double) + 13 * real + 5 * sizeof(int));
   if (evaluations) *evaluations = sph->evaluations;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -17,7 +17,8 @@ static PetscErrorCode CheckPositive(Sph sph, const char *name, PetscReal value, 
 {
   PetscFunctionBegin;
   PetscCall(CheckEditable(sph, name));
-  PetscCheck(PetscIsNormalReal(value) && value > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_%s = %g: must be > 0 (%s)", name, (double)value, unit);
+  PetscCheck(PetscIsNormalReal(value) && value > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_%s = %g: must be > 0 (%s)", name,
+             (double)value, unit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -25,14 +26,17 @@ static PetscErrorCode CheckRange(Sph sph, const char *name, PetscReal value, Pet
 {
   PetscFunctionBegin;
   PetscCall(CheckEditable(sph, name));
-  PetscCheck(value >= lo && value <= hi, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_%s = %g: must be in [%g, %g]", name, (double)value, (double)lo, (double)hi);
+  PetscCheck(value >= lo && value <= hi, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_%s = %g: must be in [%g, %g]", name,
+             (double)value, (double)lo, (double)hi);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode CheckFinite3(Sph sph, const char *name, const PetscReal v[3])
 {
   PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) PetscCheck(!PetscIsInfOrNanReal(v[k]), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "%s[%d] = %g: must be finite", name, k, (double)v[k]);
+  for (int k = 0; k < 3; k++)
+    PetscCheck(!PetscIsInfOrNanReal(v[k]), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "%s[%d] = %g: must be finite", name, k,
+               (double)v[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,7 +109,8 @@ PetscErrorCode SphSetViscosity(Sph sph, PetscReal mu)
 {
   PetscFunctionBegin;
   PetscCall(CheckEditable(sph, "viscosity"));
-  PetscCheck(mu >= 0.0 && !PetscIsInfOrNanReal(mu), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_viscosity = %g: must be >= 0 (Pa s)", (double)mu);
+  PetscCheck(mu >= 0.0 && !PetscIsInfOrNanReal(mu), sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_viscosity = %g: must be >= 0 (Pa s)", (double)mu);
   sph->par.mu = mu;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,7 +145,8 @@ PetscErrorCode SphSetBackgroundPressure(Sph sph, PetscReal pb)
 {
   PetscFunctionBegin;
   PetscCall(CheckEditable(sph, "background_pressure"));
-  PetscCheck(pb >= 0.0 && !PetscIsInfOrNanReal(pb), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_background_pressure = %g: must be >= 0 (Pa)", (double)pb);
+  PetscCheck(pb >= 0.0 && !PetscIsInfOrNanReal(pb), sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_background_pressure = %g: must be >= 0 (Pa)", (double)pb);
   sph->par.pb = pb;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -157,7 +163,8 @@ PetscErrorCode SphSetDensityReinit(Sph sph, SphReinitType type, PetscInt every)
 {
   PetscFunctionBegin;
   PetscCall(CheckEditable(sph, "reinit"));
-  PetscCheck(every >= 1, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_reinit_every = %" PetscInt_FMT ": must be >= 1 (use sph_reinit none to switch off)", every);
+  PetscCheck(every >= 1, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_reinit_every = %" PetscInt_FMT ": must be >= 1 (use sph_reinit none to switch off)", every);
   sph->par.reinit = type;
   sph->par.reinitevery = every;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -236,7 +243,8 @@ PetscErrorCode SphSetPeriodic(Sph sph, const PetscBool periodic[3])
 PetscErrorCode SphSetTimeStep(Sph sph, PetscReal dt)
 {
   PetscFunctionBegin;
-  PetscCheck(dt == (PetscReal)PETSC_DECIDE || (dt > 0.0 && !PetscIsInfOrNanReal(dt)), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dt = %g: must be > 0 (s), or -1 to follow the stability limits", (double)dt);
+  PetscCheck(dt == (PetscReal)PETSC_DECIDE || (dt > 0.0 && !PetscIsInfOrNanReal(dt)), sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_dt = %g: must be > 0 (s), or -1 to follow the stability limits", (double)dt);
   sph->par.dtfixed = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -261,21 +269,24 @@ PetscErrorCode SphSetCheckEvery(Sph sph, PetscInt every)
 static PetscErrorCode OptionsGeometry(Sph sph, PetscOptionItems *PetscOptionsObject)
 {
   SphParams *p = &sph->par;
-  PetscInt   n;
-  PetscReal  r;
-  PetscBool  set, set2;
-  char       type[16];
+  PetscInt n;
+  PetscReal r;
+  PetscBool set, set2;
+  char type[16];
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsString("-sph_type", "Backend: cpu, cuda, or auto (cuda when a device is there)", "SphSetType", sph->type, type, sizeof(type), &set));
+  PetscCall(PetscOptionsString("-sph_type", "Backend: cpu, cuda, or auto (cuda when a device is there)", "SphSetType", sph->type,
+                               type, sizeof(type), &set));
   if (set) PetscCall(SphSetType(sph, type));
   PetscCall(PetscOptionsInt("-sph_dim", "Dimension, 2 (x-y plane, per unit depth) or 3", "SphSetDimension", p->dim, &n, &set));
   if (set) PetscCall(SphSetDimension(sph, n));
   PetscCall(PetscOptionsReal("-sph_dp", "Initial marker spacing (m)", "SphSetSpacing", p->dp, &r, &set));
   if (set) PetscCall(SphSetSpacing(sph, r));
-  PetscCall(PetscOptionsReal("-sph_h_over_dp", "Smoothing length over spacing (-)", "SphSetSmoothingRatio", sph->hratio, &r, &set));
+  PetscCall(
+      PetscOptionsReal("-sph_h_over_dp", "Smoothing length over spacing (-)", "SphSetSmoothingRatio", sph->hratio, &r, &set));
   if (set) PetscCall(SphSetSmoothingRatio(sph, r));
-  PetscCall(PetscOptionsReal("-sph_h", "Smoothing length h (m); the kernel reaches 2h", "SphSetSmoothingLength", p->h, &r, &set2));
+  PetscCall(
+      PetscOptionsReal("-sph_h", "Smoothing length h (m); the kernel reaches 2h", "SphSetSmoothingLength", p->h, &r, &set2));
   PetscCheck(!(set && set2), sph->comm, PETSC_ERR_ARG_INCOMP, "sph_h and sph_h_over_dp: give only one of them");
   if (set2) PetscCall(SphSetSmoothingLength(sph, r));
   PetscCall(PetscOptionsReal("-sph_density", "Reference density rho0 (kg/m^3)", "SphSetDensity", p->rho0, &r, &set));
@@ -284,7 +295,8 @@ static PetscErrorCode OptionsGeometry(Sph sph, PetscOptionItems *PetscOptionsObj
   if (set) PetscCall(SphSetViscosity(sph, r));
   PetscCall(PetscOptionsReal("-sph_max_speed", "Expected maximum speed V_max (m/s)", "SphSetMaxSpeed", p->vmax, &r, &set));
   if (set) PetscCall(SphSetMaxSpeed(sph, r));
-  PetscCall(PetscOptionsReal("-sph_sound_speed", "Speed of sound c_s (m/s); default 10 V_max", "SphSetSoundSpeed", p->cs, &r, &set));
+  PetscCall(
+      PetscOptionsReal("-sph_sound_speed", "Speed of sound c_s (m/s); default 10 V_max", "SphSetSoundSpeed", p->cs, &r, &set));
   if (set) PetscCall(SphSetSoundSpeed(sph, r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -292,42 +304,51 @@ static PetscErrorCode OptionsGeometry(Sph sph, PetscOptionItems *PetscOptionsObj
 static PetscErrorCode OptionsMethod(Sph sph, PetscOptionItems *PetscOptionsObject)
 {
   SphParams *p = &sph->par;
-  PetscInt   n = 3;
-  PetscEnum  e;
-  PetscReal  r, f[3] = {p->f[0], p->f[1], p->f[2]};
-  PetscBool  set, set2;
+  PetscInt n = 3;
+  PetscEnum e;
+  PetscReal r, f[3] = {p->f[0], p->f[1], p->f[2]};
+  PetscBool set, set2;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsReal("-sph_gamma", "Exponent of the equation of state, Eq. 7", "SphSetGamma", p->gamma, &r, &set));
   if (set) PetscCall(SphSetGamma(sph, r));
-  PetscCall(PetscOptionsReal("-sph_background_pressure", "Constant added to the pressure (Pa)", "SphSetBackgroundPressure", p->pb, &r, &set));
+  PetscCall(PetscOptionsReal("-sph_background_pressure", "Constant added to the pressure (Pa)", "SphSetBackgroundPressure", p->pb,
+                             &r, &set));
   if (set) PetscCall(SphSetBackgroundPressure(sph, r));
   PetscCall(PetscOptionsReal("-sph_xsph", "XSPH factor zeta, Eq. 11", "SphSetXSPH", p->zeta, &r, &set));
   if (set) PetscCall(SphSetXSPH(sph, r));
-  PetscCall(PetscOptionsReal("-sph_viscosity_epsilon", "Regularisation epsilon, Eq. 6", "SphSetViscosityEpsilon", p->epsilon, &r, &set));
+  PetscCall(PetscOptionsReal("-sph_viscosity_epsilon", "Regularisation epsilon, Eq. 6", "SphSetViscosityEpsilon", p->epsilon, &r,
+                             &set));
   if (set) PetscCall(SphSetViscosityEpsilon(sph, r));
-  PetscCall(PetscOptionsBool("-sph_viscosity_lattice", "Normalise Eq. 6 by its sum over the initial lattice", "SphSetViscosityLattice", p->viscositylattice, &set2, &set));
+  PetscCall(PetscOptionsBool("-sph_viscosity_lattice", "Normalise Eq. 6 by its sum over the initial lattice",
+                             "SphSetViscosityLattice", p->viscositylattice, &set2, &set));
   if (set) PetscCall(SphSetViscosityLattice(sph, set2));
   PetscCall(PetscOptionsEnum("-sph_kernel", "Smoothing kernel", "SphSetKernel", SphKernelTypes, (PetscEnum)p->kernel, &e, &set));
   if (set) PetscCall(SphSetKernel(sph, (SphKernelType)e));
-  PetscCall(PetscOptionsEnum("-sph_precision", "Arithmetic of pair sums", "SphSetPrecision", SphPrecisions, (PetscEnum)p->precision, &e, &set));
+  PetscCall(PetscOptionsEnum("-sph_precision", "Arithmetic of pair sums", "SphSetPrecision", SphPrecisions,
+                             (PetscEnum)p->precision, &e, &set));
   if (set) PetscCall(SphSetPrecision(sph, (SphPrecision)e));
-  PetscCall(PetscOptionsEnum("-sph_wall", "Wall treatment: bce evolves boundary densities, adami extrapolates from the fluid", "SphSetWall", SphWallTypes, (PetscEnum)p->wall, &e, &set));
+  PetscCall(PetscOptionsEnum("-sph_wall", "Wall treatment: bce evolves boundary densities, adami extrapolates from the fluid",
+                             "SphSetWall", SphWallTypes, (PetscEnum)p->wall, &e, &set));
   if (set) PetscCall(SphSetWall(sph, (SphWallType)e));
   e = (PetscEnum)p->reinit;
-  PetscCall(PetscOptionsEnum("-sph_reinit", "Density re-initialisation, Eq. 9", "SphSetDensityReinit", SphReinitTypes, e, &e, &set));
+  PetscCall(
+      PetscOptionsEnum("-sph_reinit", "Density re-initialisation, Eq. 9", "SphSetDensityReinit", SphReinitTypes, e, &e, &set));
   n = p->reinitevery;
-  PetscCall(PetscOptionsInt("-sph_reinit_every", "Steps between density re-initialisations", "SphSetDensityReinit", n, &n, &set2));
+  PetscCall(
+      PetscOptionsInt("-sph_reinit_every", "Steps between density re-initialisations", "SphSetDensityReinit", n, &n, &set2));
   if (set || set2) PetscCall(SphSetDensityReinit(sph, (SphReinitType)e, n));
   n = 3;
   PetscCall(PetscOptionsRealArray("-sph_body_force", "Body force per mass (m/s^2)", "SphSetBodyForce", f, &n, &set));
   PetscCheck(!set || n == 3, sph->comm, PETSC_ERR_ARG_SIZ, "sph_body_force: needs 3 numbers, got %" PetscInt_FMT, n);
   if (set) PetscCall(SphSetBodyForce(sph, f));
-  PetscCall(PetscOptionsReal("-sph_dt", "Fixed time step (s); -1 follows the stability limits", "SphSetTimeStep", p->dtfixed, &r, &set));
+  PetscCall(PetscOptionsReal("-sph_dt", "Fixed time step (s); -1 follows the stability limits", "SphSetTimeStep", p->dtfixed, &r,
+                             &set));
   if (set) PetscCall(SphSetTimeStep(sph, r));
   PetscCall(PetscOptionsReal("-sph_cfl", "Safety factor of the stability limits", "SphSetCFL", p->cfl, &r, &set));
   if (set) PetscCall(SphSetCFL(sph, r));
-  PetscCall(PetscOptionsInt("-sph_check_every", "Steps between checks for non-finite values", "SphSetCheckEvery", p->checkevery, &n, &set));
+  PetscCall(PetscOptionsInt("-sph_check_every", "Steps between checks for non-finite values", "SphSetCheckEvery", p->checkevery,
+                            &n, &set));
   if (set) PetscCall(SphSetCheckEvery(sph, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -347,16 +368,29 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
   const SphParams *p = &sph->par;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "SPH fluid: type %s, %" PetscInt_FMT "D, precision %s, kernel %s\n", sph->type, p->dim, SphPrecisions[p->precision], SphKernelTypes[p->kernel]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  markers: %" PetscInt_FMT " fluid, %" PetscInt_FMT " boundary in %" PetscInt_FMT " groups\n", sph->nfluid, sph->n - sph->nfluid, sph->ngroups));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dp %g m, sph_h %g m (h/dp %g)\n", (double)p->dp, (double)p->h, (double)(p->h / p->dp)));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_density %g kg/m^3, sph_viscosity %g Pa s, sph_gamma %g, sph_background_pressure %g Pa\n", (double)p->rho0, (double)p->mu, (double)p->gamma, (double)p->pb));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "SPH fluid: type %s, %" PetscInt_FMT "D, precision %s, kernel %s\n", sph->type, p->dim,
+                                   SphPrecisions[p->precision], SphKernelTypes[p->kernel]));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  markers: %" PetscInt_FMT " fluid, %" PetscInt_FMT " boundary in %" PetscInt_FMT " groups\n",
+                                   sph->nfluid, sph->n - sph->nfluid, sph->ngroups));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dp %g m, sph_h %g m (h/dp %g)\n", (double)p->dp, (double)p->h,
+                                   (double)(p->h / p->dp)));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  sph_density %g kg/m^3, sph_viscosity %g Pa s, sph_gamma %g, sph_background_pressure %g Pa\n", (double)p->rho0,
+      (double)p->mu, (double)p->gamma, (double)p->pb));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_max_speed %g m/s, sph_sound_speed %g m/s\n", (double)p->vmax, (double)p->cs));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_xsph %g, sph_viscosity_epsilon %g, sph_viscosity_lattice %d, sph_wall %s, sph_reinit %s every %" PetscInt_FMT " steps\n", (double)p->zeta, (double)p->epsilon, p->viscositylattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit], p->reinitevery));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n", (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  sph_xsph %g, sph_viscosity_epsilon %g, sph_viscosity_lattice %d, sph_wall %s, sph_reinit %s every %" PetscInt_FMT
+      " steps\n",
+      (double)p->zeta, (double)p->epsilon, p->viscositylattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit],
+      p->reinitevery));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
+                                   (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
   if (p->dtfixed > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dt %g s (fixed)\n", (double)p->dtfixed));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  domain (%g, %g, %g) to (%g, %g, %g) m, periodic %d %d %d\n", (double)p->lo[0], (double)p->lo[1], (double)p->lo[2], (double)p->hi[0], (double)p->hi[1], (double)p->hi[2], p->periodic[0], p->periodic[1],
-                                   p->periodic[2]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  domain (%g, %g, %g) to (%g, %g, %g) m, periodic %d %d %d\n", (double)p->lo[0],
+                                   (double)p->lo[1], (double)p->lo[2], (double)p->hi[0], (double)p->hi[1], (double)p->hi[2],
+                                   p->periodic[0], p->periodic[1], p->periodic[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,254 @@
+/*
+  couple.c - the coupled time loop.
+
+  One step from t to t + dt, second order for smooth loads: rates at t and fluid at the half step; markers of every surface
+  extrapolated to the half step with the structure's velocity and acceleration; rates, fluid state at t + dt and marker
+  forces at the half step (a midpoint rule for both sides); structures advance to t + dt under these forces with substeps of
+  their own; markers take the new state. Staggered: exact action and reaction, no iteration.
+*/
+#include "coupleimpl.h"
+
+PetscLogEvent COUPLE_Kinematics, COUPLE_Transfer, COUPLE_Advance;
+
+static PetscErrorCode RegisterEvents(void)
+{
+  static PetscBool done = PETSC_FALSE;
+  PetscClassId id;
+
+  PetscFunctionBegin;
+  if (done) PetscFunctionReturn(PETSC_SUCCESS);
+  done = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Couple", &id));
+  PetscCall(PetscLogEventRegister("CoupleKinematics", id, &COUPLE_Kinematics));
+  PetscCall(PetscLogEventRegister("CoupleTransfer", id, &COUPLE_Transfer));
+  PetscCall(PetscLogEventRegister("CoupleAdvance", id, &COUPLE_Advance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple)
+{
+  Couple c;
+
+  PetscFunctionBegin;
+  PetscCall(RegisterEvents());
+  PetscCall(PetscNew(&c));
+  c->comm = comm;
+  c->dtmax = PETSC_DECIDE;
+  *couple = c;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CoupleSetSph - The fluid; its markers are added before CoupleSetUp(). The caller keeps ownership.
+@*/
+PetscErrorCode CoupleSetSph(Couple c, Sph sph)
+{
+  PetscFunctionBegin;
+  c->sph = sph;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleAddSurface(Couple c, CoupleSurface surface)
+{
+  PetscFunctionBegin;
+  PetscCheck(!c->setup, c->comm, PETSC_ERR_ORDER, "surfaces cannot be added after CoupleSetUp()");
+  if (c->n == c->cap) {
+    CoupleSlot *slot;
+    c->cap = 2 * c->cap + 8;
+    PetscCall(PetscCalloc1(c->cap, &slot));
+    if (c->n) PetscCall(PetscArraycpy(slot, c->slot, c->n));
+    PetscCall(PetscFree(c->slot));
+    c->slot = slot;
+  }
+  c->slot[c->n++].surface = surface;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSetMaxTimeStep(Couple c, PetscReal dtmax)
+{
+  PetscFunctionBegin;
+  PetscCheck(dtmax == (PetscReal)PETSC_DECIDE || (dtmax > 0.0 && !PetscIsInfOrNanReal(dtmax)), c->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "couple_dt_max = %g: must be > 0 (s), or -1 for none", (double)dtmax);
+  c->dtmax = dtmax;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSetFromOptions(Couple c)
+{
+  PetscReal r = c->dtmax;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(c->comm, NULL, "Coupling options", "Couple");
+  PetscCall(
+      PetscOptionsReal("-couple_dt_max", "Upper bound on the time step (s); -1 for none", "CoupleSetMaxTimeStep", r, &r, &set));
+  if (set) PetscCall(CoupleSetMaxTimeStep(c, r));
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Every surface's markers at the structures' own time plus ahead, to the fluid. */
+static PetscErrorCode MoveMarkers(Couple c, PetscReal ahead)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(COUPLE_Kinematics, 0, 0, 0, 0));
+  for (PetscInt i = 0; i < c->n; i++) {
+    CoupleSlot *s = &c->slot[i];
+    PetscCall((*s->surface->ops.kinematics)(s->surface, ahead, s->x, s->v, s->a));
+    PetscCall(SphSetBoundaryMotion(c->sph, s->group, s->x, s->v, s->a));
+  }
+  PetscCall(PetscLogEventEnd(COUPLE_Kinematics, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSetUp(Couple c)
+{
+  PetscFunctionBegin;
+  if (c->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(c->sph, c->comm, PETSC_ERR_ORDER, "CoupleSetSph() must come before CoupleSetUp()");
+  for (PetscInt i = 0; i < c->n; i++) {
+    CoupleSlot *s = &c->slot[i];
+    const PetscReal *x, *volume, *depth;
+    PetscCall((*s->surface->ops.getmarkers)(s->surface, &s->n, &x, &volume, &depth));
+    PetscCall(PetscCalloc4(3 * s->n, &s->x, 3 * s->n, &s->v, 3 * s->n, &s->a, 3 * s->n, &s->f));
+    PetscCall((*s->surface->ops.kinematics)(s->surface, 0.0, s->x, s->v, s->a));
+    PetscCall(SphAddBoundary(c->sph, s->n, s->x, s->v, volume, depth, &s->group));
+  }
+  PetscCall(SphSetUp(c->sph));
+  PetscCall(MoveMarkers(c, 0.0));
+  c->setup = PETSC_TRUE;
+  PetscCall(CoupleBalanceStart(c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleView(Couple c, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "Coupling: %" PetscInt_FMT " surfaces, couple_dt_max %g s\n", c->n, (double)c->dtmax));
+  for (PetscInt i = 0; i < c->n; i++)
+    if (c->slot[i].surface->ops.view) PetscCall((*c->slot[i].surface->ops.view)(c->slot[i].surface, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleDestroy(Couple *couple)
+{
+  PetscFunctionBegin;
+  if (!*couple) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < (*couple)->n; i++) {
+    CoupleSlot *s = &(*couple)->slot[i];
+    if (s->x) PetscCall(PetscFree4(s->x, s->v, s->a, s->f));
+    PetscCall(CoupleSurfaceDestroy(&s->surface));
+  }
+  PetscCall(PetscFree((*couple)->slot));
+  PetscCall(PetscFree(*couple));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void MarkerTotals(const CoupleSlot *s, CoupleAudit *audit)
+{
+  for (PetscInt i = 0; i < s->n; i++) {
+    PetscReal m[3];
+    CoupleCross(s->x + 3 * i, s->f + 3 * i, m);
+    for (int k = 0; k < 3; k++) {
+      audit->force[k] += s->f[3 * i + k];
+      audit->moment[k] += m[k];
+    }
+    audit->power += CoupleDot(s->f + 3 * i, s->v + 3 * i);
+  }
+}
+
+/* Forces at the half step to every structure; s->x, s->v still hold the marker state that they act on. */
+static PetscErrorCode Transfer(Couple c)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(COUPLE_Transfer, 0, 0, 0, 0));
+  for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.zeroloads)(c->slot[i].surface));
+  for (PetscInt i = 0; i < c->n; i++) {
+    CoupleSlot *s = &c->slot[i];
+    CoupleAudit audit = {0};
+    PetscCall(SphGetBoundaryForce(c->sph, s->group, s->f));
+    MarkerTotals(s, &audit);
+    PetscCall((*s->surface->ops.applyforces)(s->surface, s->f, &audit));
+    s->audit = audit;
+  }
+  PetscCall(PetscLogEventEnd(COUPLE_Transfer, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The stable step, shortened to end at tmax without leaving a sliver. */
+static PetscErrorCode ChooseStep(Couple c, PetscReal tmax, PetscReal *dt)
+{
+  PetscReal t, left;
+
+  PetscFunctionBegin;
+  PetscCall(SphGetTime(c->sph, &t, NULL));
+  PetscCall(SphComputeTimeStep(c->sph, dt));
+  if (c->dtmax > 0.0) *dt = PetscMin(*dt, c->dtmax);
+  left = tmax - t;
+  PetscCheck(left > 0.0, c->comm, PETSC_ERR_ARG_OUTOFRANGE, "the end time %g s must lie after the current time %g s",
+             (double)tmax, (double)t);
+  if (left <= *dt * (1.0 + 1e-9))
+    *dt = left;
+  else if (left < 2.0 * *dt)
+    *dt = 0.5 * left;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CoupleStep - One step of fluid and structures, not past tmax (s); returns the step taken.
+
+  Errors: PETSC_ERR_FP on a non-finite value, PETSC_ERR_NOT_CONVERGED when a structure's solver fails.
+@*/
+PetscErrorCode CoupleStep(Couple c, PetscReal tmax, PetscReal *taken)
+{
+  PetscReal t, dt;
+
+  PetscFunctionBegin;
+  PetscCheck(c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetUp() must come before CoupleStep()");
+  PetscCall(SphGetTime(c->sph, &t, NULL));
+  PetscCall(ChooseStep(c, tmax, &dt));
+  PetscCall(SphStepBegin(c->sph, dt));
+  PetscCall(MoveMarkers(c, 0.5 * dt));
+  PetscCall(SphStepEnd(c->sph));
+  PetscCall(Transfer(c));
+  PetscCall(PetscLogEventBegin(COUPLE_Advance, 0, 0, 0, 0));
+  for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.advance)(c->slot[i].surface, t + dt));
+  PetscCall(PetscLogEventEnd(COUPLE_Advance, 0, 0, 0, 0));
+  PetscCall(MoveMarkers(c, 0.0));
+  PetscCall(CoupleBalanceAdd(c, dt));
+  if (taken) *taken = dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleGetTime(Couple c, PetscReal *t, PetscInt *step)
+{
+  PetscFunctionBegin;
+  PetscCall(SphGetTime(c->sph, t, step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleGetNumSurfaces(Couple c, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = c->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleGetSurface(Couple c, PetscInt i, CoupleSurface *surface, PetscInt *group)
+{
+  PetscFunctionBegin;
+  PetscCheck(i >= 0 && i < c->n, c->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "surface %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", i, c->n);
+  if (surface) *surface = c->slot[i].surface;
+  if (group) *group = c->slot[i].group;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleGetAudit(Couple c, PetscInt i, CoupleAudit *audit)
+{
+  PetscFunctionBegin;
+  PetscCheck(i >= 0 && i < c->n, c->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "surface %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", i, c->n);
+  *audit = c->slot[i].audit;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,52 @@
+/* coupleimpl.h - private: surfaces, the coupled system, small vector helpers. */
+#ifndef COUPLEIMPL_H
+#define COUPLEIMPL_H
+
+#include "couple.h"
+
+struct _p_CoupleSurface {
+  MPI_Comm comm;
+  char name[64];
+  CoupleSurfaceOps ops;
+  void *ctx;
+  PetscBool held;
+};
+
+typedef struct {
+  CoupleSurface surface;
+  PetscInt group, n;
+  PetscReal *x, *v, *a, *f; /* n x 3 */
+  CoupleAudit audit;
+  PetscReal weight[3], support[3]; /* forces at the last time, for the balance */
+} CoupleSlot;
+
+struct _p_Couple {
+  MPI_Comm comm;
+  Sph sph;
+  CoupleSlot *slot;
+  PetscInt n, cap;
+  PetscReal dtmax;
+  PetscBool setup;
+  PetscReal p0[3];       /* momentum at set-up */
+  CoupleBalance balance; /* impulses accumulated so far */
+};
+
+extern PetscLogEvent COUPLE_Kinematics, COUPLE_Transfer, COUPLE_Advance;
+
+/* couplebalance.c */
+extern PetscErrorCode CoupleBalanceStart(Couple couple);
+extern PetscErrorCode CoupleBalanceAdd(Couple couple, PetscReal dt);
+
+static inline void CoupleCross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
+{
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline PetscReal CoupleDot(const PetscReal a[3], const PetscReal b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+#endif

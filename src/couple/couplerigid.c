@@ -1,0 +1,190 @@
+/*
+  couplerigid.c - adapter of a rigid body: BCE markers fixed in the body frame, wrench about the centre of mass (Eqs. 12 and 14).
+*/
+#include "coupleimpl.h"
+
+typedef struct {
+  Rigid rigid;
+  PetscInt body, n;
+  PetscReal mass;
+  PetscReal *xb, *x0, *volume, *depth; /* body frame and rest positions (n x 3), volumes, depths (n) */
+  PetscReal X[3], V[3], omega[3];      /* state of the last kinematics call */
+  PetscReal *x, *v;                    /* marker state of that call, n x 3 */
+  PetscReal F[3];                      /* fluid force of the last step */
+} Body;
+
+static PetscErrorCode GetMarkers_Rigid(CoupleSurface s, PetscInt *n, const PetscReal **x, const PetscReal **volume,
+                                       const PetscReal **depth)
+{
+  const Body *b = (const Body *)s->ctx;
+
+  PetscFunctionBegin;
+  *n = b->n;
+  *x = b->x0;
+  *volume = b->volume;
+  *depth = b->depth;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rotate o by the rotation vector p (Rodrigues). */
+static void Rotate(const PetscReal p[3], const PetscReal o[3], PetscReal r[3])
+{
+  const PetscReal angle = PetscSqrtReal(CoupleDot(p, p));
+  PetscReal c[3], d[3], s1 = 1.0, s2 = 0.5;
+
+  if (angle > 1e-8) {
+    s1 = PetscSinReal(angle) / angle;
+    s2 = 2.0 * PetscSqr(PetscSinReal(0.5 * angle) / angle);
+  }
+  CoupleCross(p, o, c);
+  CoupleCross(p, c, d);
+  for (int k = 0; k < 3; k++) r[k] = o[k] + s1 * c[k] + s2 * d[k];
+}
+
+static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
+{
+  Body *b = (Body *)s->ctx;
+  PetscReal q[4], R[9], A[3], alpha[3], turn[3];
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetState(b->rigid, b->body, b->X, q, b->V, b->omega));
+  PetscCall(RigidGetAcceleration(b->rigid, b->body, A, alpha));
+  RigidRotationMatrix(q, R);
+  for (int k = 0; k < 3; k++) {
+    turn[k] = dt * (b->omega[k] + 0.5 * dt * alpha[k]);
+    b->X[k] += dt * (b->V[k] + 0.5 * dt * A[k]);
+    b->V[k] += dt * A[k];
+    b->omega[k] += dt * alpha[k];
+  }
+  for (PetscInt i = 0; i < b->n; i++) {
+    const PetscReal *p = b->xb + 3 * i, o0[3] = {R[0] * p[0] + R[1] * p[1] + R[2] * p[2], R[3] * p[0] + R[4] * p[1] + R[5] * p[2],
+                                                 R[6] * p[0] + R[7] * p[1] + R[8] * p[2]};
+    PetscReal o[3], wo[3], wwo[3], ao[3];
+    Rotate(turn, o0, o);
+    CoupleCross(b->omega, o, wo);
+    CoupleCross(b->omega, wo, wwo);
+    CoupleCross(alpha, o, ao);
+    for (int k = 0; k < 3; k++) {
+      x[3 * i + k] = b->x[3 * i + k] = b->X[k] + o[k];
+      v[3 * i + k] = b->v[3 * i + k] = b->V[k] + wo[k];
+      a[3 * i + k] = A[k] + ao[k] + wwo[k];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ZeroLoads_Rigid(CoupleSurface s)
+{
+  Body *b = (Body *)s->ctx;
+
+  PetscFunctionBegin;
+  if (b->body == 0) PetscCall(RigidZeroLoads(b->rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyForces_Rigid(CoupleSurface s, const PetscReal *f, CoupleAudit *audit)
+{
+  Body *b = (Body *)s->ctx;
+  PetscReal F[3] = {0, 0, 0}, T[3] = {0, 0, 0}, XF[3];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < b->n; i++) {
+    const PetscReal o[3] = {b->x[3 * i] - b->X[0], b->x[3 * i + 1] - b->X[1], b->x[3 * i + 2] - b->X[2]};
+    PetscReal c[3];
+    CoupleCross(o, f + 3 * i, c);
+    for (int k = 0; k < 3; k++) {
+      F[k] += f[3 * i + k];
+      T[k] += c[k];
+    }
+  }
+  PetscCall(RigidAddLoad(b->rigid, b->body, F, T));
+  CoupleCross(b->X, F, XF);
+  for (int k = 0; k < 3; k++) {
+    audit->force_lost[k] = audit->force[k] - F[k];
+    audit->moment_lost[k] = audit->moment[k] - (XF[k] + T[k]);
+    b->F[k] = F[k];
+  }
+  audit->power_lost = audit->power - (CoupleDot(F, b->V) + CoupleDot(T, b->omega));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Advance_Rigid(CoupleSurface s, PetscReal t)
+{
+  Body *b = (Body *)s->ctx;
+  PetscReal now;
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetTime(b->rigid, &now));
+  if (now < t) PetscCall(RigidAdvance(b->rigid, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The weight is what accelerates the body beyond the fluid's force: M A = F + weight. */
+static PetscErrorCode Momentum_Rigid(CoupleSurface s, PetscReal p[3], PetscReal weight[3], PetscReal support[3])
+{
+  const Body *b = (const Body *)s->ctx;
+  PetscReal V[3], A[3], alpha[3];
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetState(b->rigid, b->body, NULL, NULL, V, NULL));
+  PetscCall(RigidGetAcceleration(b->rigid, b->body, A, alpha));
+  for (int k = 0; k < 3; k++) {
+    p[k] = b->mass * V[k];
+    weight[k] = b->mass * A[k] - b->F[k];
+    support[k] = 0.0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View_Rigid(CoupleSurface s, PetscViewer viewer)
+{
+  const Body *b = (const Body *)s->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  body %s: %" PetscInt_FMT " markers\n", s->name, b->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Rigid(CoupleSurface s)
+{
+  Body *b = (Body *)s->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree(b->xb));
+  PetscCall(PetscFree(b->volume));
+  PetscCall(PetscFree(b->depth));
+  PetscCall(PetscFree3(b->x0, b->x, b->v));
+  PetscCall(PetscFree(s->ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CoupleSurfaceCreateRigid - Surface of body `body` (set up before), filled with BCE markers dp apart to depthmax (m) below its
+surface.
+@*/
+PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax,
+                                        CoupleSurface *surface)
+{
+  const CoupleSurfaceOps ops = {GetMarkers_Rigid, Kinematics_Rigid, ZeroLoads_Rigid, ApplyForces_Rigid,
+                                Advance_Rigid,    Momentum_Rigid,   View_Rigid,      Destroy_Rigid};
+  RigidBodySpec spec;
+  PetscReal *a;
+  char name[64];
+  Body *b;
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetBody(rigid, body, &spec));
+  PetscCall(PetscNew(&b));
+  b->rigid = rigid;
+  b->body = body;
+  b->mass = spec.mass;
+  PetscCall(RigidFillMarkers(&spec, dim, dp, depthmax, &b->n, &b->xb, &b->volume, &b->depth));
+  PetscCall(PetscMalloc3(3 * b->n, &b->x0, 3 * b->n, &b->x, 3 * b->n, &b->v));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "body_%" PetscInt_FMT, body));
+  PetscCall(CoupleSurfaceCreate(PETSC_COMM_SELF, name, &ops, b, surface));
+  PetscCall(CoupleSurfaceSetHeld(*surface, spec.motion != RIGID_FREE ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(PetscMalloc1(3 * b->n, &a));
+  PetscCall(Kinematics_Rigid(*surface, 0.0, b->x0, b->v, a));
+  PetscCall(PetscFree(a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

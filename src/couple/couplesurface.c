@@ -1,0 +1,151 @@
+/* couplesurface.c - the surface object itself, and the adapter for walls with prescribed motion. */
+#include "coupleimpl.h"
+
+/*@
+  CoupleSurfaceCreate - Wrap a structure for the coupling. All of ops but momentum, view and destroy must be set; ctx is the
+caller's.
+@*/
+PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx,
+                                   CoupleSurface *surface)
+{
+  CoupleSurface s;
+
+  PetscFunctionBegin;
+  PetscCheck(ops->getmarkers && ops->kinematics && ops->zeroloads && ops->applyforces && ops->advance, comm, PETSC_ERR_ARG_NULL,
+             "surface %s: getmarkers, kinematics, zeroloads, applyforces and advance must all be given", name);
+  PetscCall(PetscNew(&s));
+  s->comm = comm;
+  PetscCall(PetscStrncpy(s->name, name, sizeof(s->name)));
+  s->ops = *ops;
+  s->ctx = ctx;
+  *surface = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceGetContext(CoupleSurface surface, void *ctx)
+{
+  PetscFunctionBegin;
+  *(void **)ctx = surface->ctx;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name)
+{
+  PetscFunctionBegin;
+  *name = surface->name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceSetHeld(CoupleSurface surface, PetscBool held)
+{
+  PetscFunctionBegin;
+  surface->held = held;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface)
+{
+  PetscFunctionBegin;
+  if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
+  if ((*surface)->ops.destroy) PetscCall((*(*surface)->ops.destroy)(*surface));
+  PetscCall(PetscFree(*surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  PetscInt n;
+  PetscReal *x, *volume, *depth;
+  PetscReal velocity[3], t;
+} Wall;
+
+static PetscErrorCode GetMarkers_Wall(CoupleSurface s, PetscInt *n, const PetscReal **x, const PetscReal **volume,
+                                      const PetscReal **depth)
+{
+  const Wall *w = (const Wall *)s->ctx;
+
+  PetscFunctionBegin;
+  *n = w->n;
+  *x = w->x;
+  *volume = w->volume;
+  *depth = w->depth;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Kinematics_Wall(CoupleSurface s, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
+{
+  const Wall *w = (const Wall *)s->ctx;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < w->n; i++)
+    for (int k = 0; k < 3; k++) {
+      x[3 * i + k] = w->x[3 * i + k] + (w->t + dt) * w->velocity[k];
+      v[3 * i + k] = w->velocity[k];
+      a[3 * i + k] = 0.0;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ZeroLoads_Wall(CoupleSurface s)
+{
+  (void)s;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode ApplyForces_Wall(CoupleSurface s, const PetscReal *f, CoupleAudit *audit)
+{
+  (void)s; /* a wall takes any force up: nothing is lost */
+  (void)f;
+  (void)audit;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Advance_Wall(CoupleSurface s, PetscReal t)
+{
+  ((Wall *)s->ctx)->t = t;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode View_Wall(CoupleSurface s, PetscViewer viewer)
+{
+  const Wall *w = (const Wall *)s->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  wall %s: %" PetscInt_FMT " markers, velocity (%g, %g, %g) m/s\n", s->name, w->n,
+                                   (double)w->velocity[0], (double)w->velocity[1], (double)w->velocity[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Wall(CoupleSurface s)
+{
+  Wall *w = (Wall *)s->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree3(w->x, w->volume, w->depth));
+  PetscCall(PetscFree(s->ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume,
+                                       const PetscReal *depth, const PetscReal velocity[3], CoupleSurface *surface)
+{
+  const CoupleSurfaceOps ops = {.getmarkers = GetMarkers_Wall,
+                                .kinematics = Kinematics_Wall,
+                                .zeroloads = ZeroLoads_Wall,
+                                .applyforces = ApplyForces_Wall,
+                                .advance = Advance_Wall,
+                                .view = View_Wall,
+                                .destroy = Destroy_Wall};
+  Wall *w;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&w));
+  PetscCall(PetscMalloc3(3 * n, &w->x, n, &w->volume, n, &w->depth));
+  PetscCall(PetscArraycpy(w->x, x, 3 * n));
+  PetscCall(PetscArraycpy(w->volume, volume, n));
+  PetscCall(PetscArraycpy(w->depth, depth, n));
+  for (int k = 0; k < 3; k++) w->velocity[k] = velocity[k];
+  w->n = n;
+  PetscCall(CoupleSurfaceCreate(comm, name, &ops, w, surface));
+  PetscCall(CoupleSurfaceSetHeld(*surface, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
