@@ -111,8 +111,15 @@ PetscErrorCode AppInjectFault(App *app);
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3]);
 
 /* appunknown.c: options that nothing has asked for are an error. */
-PetscErrorCode AppOptionsUnused(PetscBool only_unlisted, size_t len, char text[]);
-PetscErrorCode AppOptionsCheckUnused(void);
+typedef struct {
+  PetscInt n, alloc;
+  char **name;
+  PetscBool partial; /* the list is not whole */
+} AppKnown;
+PetscErrorCode AppKnownCollect(AppKnown *known);
+void AppKnownFree(AppKnown *known);
+PetscErrorCode AppOptionsUnused(const AppKnown *known, PetscBool only_unlisted, size_t len, char text[]);
+PetscErrorCode AppOptionsCheckUnused(const AppKnown *known);
 PetscErrorCode AppHelp(void);
 
 /* output.c: one HDF5 file per frame and an XDMF index of them all. */

@@ -266,8 +266,6 @@ static PetscErrorCode build_couple(App *app)
   if (!s->fluid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CoupleCreate(PETSC_COMM_SELF, &app->couple));
   PetscCall(CoupleSetSph(app->couple, app->sph));
-  if (app->ancf) PetscCall(CoupleSetAncf(app->couple, app->ancf));
-  if (app->rigid) PetscCall(CoupleSetRigid(app->couple, app->rigid));
   PetscCall(CoupleSetFromOptions(app->couple));
   PetscCall(fill_fluid(app));
   PetscCall(add_walls(app));

@@ -6,15 +6,12 @@
 */
 #include "app.h"
 #include <ctype.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <string.h>
+#include <unistd.h>
 
-typedef struct {
-  PetscInt n, alloc;
-  char **name;
-} NameList;
-
-static NameList *collecting; /* PETSc's help printer has no context argument */
+static AppKnown *collecting; /* PETSc's help printer has no context argument */
 
 static PetscErrorCode collect_name(MPI_Comm comm, const char format[], ...)
 {
@@ -29,7 +26,7 @@ static PetscErrorCode collect_name(MPI_Comm comm, const char format[], ...)
   if (start == line || *start != '-' || !collecting) return PETSC_SUCCESS;
   start++;
   for (end = start; isalnum((unsigned char)*end) || *end == '_' || *end == '-';) end++;
-  if (end == start || *end != ':') return PETSC_SUCCESS;
+  if (end == start || (*end != ':' && *end != ' ')) return PETSC_SUCCESS;
   *end = 0;
   if (collecting->n == collecting->alloc) {
     collecting->alloc = 2 * collecting->alloc + 256;
@@ -109,23 +106,60 @@ PetscErrorCode AppHelp(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode collect(NameList *list)
+/* A copy of the options database with -help set. */
+static PetscErrorCode copy_options(PetscOptions *copy)
+{
+  char *all;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsCreate(copy));
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  PetscCall(PetscOptionsInsertString(*copy, all));
+  PetscCall(PetscOptionsSetValue(*copy, "-help", NULL));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  List the options that exist for the scene in the database. To be called before anything else reads options: PETSC
+  lists a block once only. Works on a copy, so that nothing counts as used.
+*/
+PetscErrorCode AppKnownCollect(AppKnown *known)
 {
   PetscErrorCode (*printer)(MPI_Comm, const char[], ...) = PetscHelpPrintf;
   PetscErrorCode (*const part[])(void) = {scene_options, sph_options, rigid_options, couple_options, ancf_options};
+  PetscOptions copy;
+  int nowhere, out;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  collecting = list;
+  PetscCall(copy_options(&copy));
+  PetscCall(PetscOptionsPush(copy));
+  collecting = known;
   PetscHelpPrintf = collect_name;
+  fflush(stdout); /* lists of types go past the help printer, to stdout */
+  out = dup(STDOUT_FILENO);
+  nowhere = open("/dev/null", O_WRONLY);
+  if (out >= 0 && nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
   for (size_t i = 0; i < sizeof(part) / sizeof(part[0]); i++)
-    (void)part[i](); /* a bad value ends one part's list early, no more */
+    if (part[i]()) known->partial = PETSC_TRUE; /* a bad value ends one part of the list early */
+  fflush(stdout);
+  if (out >= 0 && nowhere >= 0) dup2(out, STDOUT_FILENO);
+  if (out >= 0) close(out);
+  if (nowhere >= 0) close(nowhere);
   PetscHelpPrintf = printer;
   collecting = NULL;
+  PetscCall(PetscOptionsPop());
+  PetscCall(PetscOptionsDestroy(&copy));
   PetscCall(PetscPopErrorHandler());
-  PetscCall(PetscOptionsClearValue(NULL, "-help"));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void AppKnownFree(AppKnown *known)
+{
+  for (PetscInt i = 0; i < known->n; i++) free(known->name[i]);
+  free(known->name);
+  memset(known, 0, sizeof(*known));
 }
 
 /* Damerau-Levenshtein distance (adjacent transpositions count one), at most 64 letters. */
@@ -144,7 +178,7 @@ static int distance(const char a[], const char b[])
 }
 
 /* known: the name is listed. nearest: the closest listed name, or NULL when none is close. */
-static void look_up(const NameList *list, const char name[], PetscBool *known, const char **nearest)
+static void look_up(const AppKnown *list, const char name[], PetscBool *known, const char **nearest)
 {
   int best = 1 + (int)strlen(name) / 4, d;
 
@@ -177,9 +211,8 @@ static PetscBool is_petsc_wide(const char name[])
   One sentence about the options that were set and that nothing asked for; empty when there are none. With `only_unlisted`,
   an option that exists but was not asked for yet is no offence.
 */
-PetscErrorCode AppOptionsUnused(PetscBool only_unlisted, size_t len, char text[])
+PetscErrorCode AppOptionsUnused(const AppKnown *list, PetscBool only_unlisted, size_t len, char text[])
 {
-  NameList list = {0, 0, NULL};
   PetscInt n;
   char **name, **value, one[512];
 
@@ -190,8 +223,7 @@ PetscErrorCode AppOptionsUnused(PetscBool only_unlisted, size_t len, char text[]
     const char *nearest;
     PetscBool known;
     if (is_petsc_wide(name[i])) continue;
-    if (!list.n) PetscCall(collect(&list));
-    look_up(&list, name[i], &known, &nearest);
+    look_up(list, name[i], &known, &nearest);
     if (known && only_unlisted) continue;
     if (known)
       snprintf(one, sizeof(one), "%soption %s has no effect in this scene", text[0] ? "; " : "", name[i]);
@@ -202,18 +234,16 @@ PetscErrorCode AppOptionsUnused(PetscBool only_unlisted, size_t len, char text[]
     PetscCall(PetscStrlcat(text, one, len));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &name, &value));
-  for (PetscInt i = 0; i < list.n; i++) free(list.name[i]);
-  free(list.name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* After all set-up: an option that nothing asked for is an error that names it. */
-PetscErrorCode AppOptionsCheckUnused(void)
+PetscErrorCode AppOptionsCheckUnused(const AppKnown *known)
 {
   char text[1600];
 
   PetscFunctionBegin;
-  PetscCall(AppOptionsUnused(PETSC_FALSE, sizeof(text), text));
+  PetscCall(AppOptionsUnused(known, PETSC_FALSE, sizeof(text), text));
   PetscCheck(!text[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "%s", text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,6 +7,7 @@
 */
 #include "app.h"
 #include <hdf5.h>
+#include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -76,7 +77,7 @@ static PetscErrorCode check_ranks(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode run_scene(const Command *c, AppErrors *errors, int *exitcode)
+static PetscErrorCode run_scene(const Command *c, AppErrors *errors, AppKnown *known, int *exitcode)
 {
   App app;
 
@@ -84,9 +85,10 @@ static PetscErrorCode run_scene(const Command *c, AppErrors *errors, int *exitco
   PetscCall(PetscMemzero(&app, sizeof(app)));
   app.errors = errors;
   PetscCall(AppOptionsInsertFile(c->file));
+  PetscCall(AppKnownCollect(known));
   PetscCall(AppSceneRead(&app.scene, c->file));
   PetscCall(AppBuild(&app));
-  PetscCall(AppOptionsCheckUnused());
+  PetscCall(AppOptionsCheckUnused(known));
   if (c->check)
     PetscCall(AppCheck(&app));
   else
@@ -95,7 +97,7 @@ static PetscErrorCode run_scene(const Command *c, AppErrors *errors, int *exitco
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode execute(int argc, char **argv, AppErrors *errors, int *exitcode)
+static PetscErrorCode execute(int argc, char **argv, AppErrors *errors, AppKnown *known, int *exitcode)
 {
   Command c;
 
@@ -110,18 +112,18 @@ static PetscErrorCode execute(int argc, char **argv, AppErrors *errors, int *exi
     if (c.file) PetscCall(AppOptionsInsertFile(c.file));
     PetscCall(AppHelp());
   } else
-    PetscCall(run_scene(&c, errors, exitcode));
+    PetscCall(run_scene(&c, errors, known, exitcode));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A misspelt option may be why another one is missing: add it to the line of a user's error. */
-static void add_misspelt(AppErrors *errors)
+static void add_misspelt(const AppKnown *known, AppErrors *errors)
 {
   char text[1600];
   size_t n;
 
-  if (strstr(errors->message, "unknown option")) return;
-  if (AppOptionsUnused(PETSC_TRUE, sizeof(text), text) || !text[0]) return;
+  if (!known->n || known->partial || strstr(errors->message, "unknown option")) return;
+  if (AppOptionsUnused(known, PETSC_TRUE, sizeof(text), text) || !text[0]) return;
   n = strlen(errors->message);
   snprintf(errors->message + n, sizeof(errors->message) - n, " [%s]", text);
 }
@@ -129,6 +131,7 @@ static void add_misspelt(AppErrors *errors)
 int main(int argc, char **argv)
 {
   AppErrors errors = {PETSC_FALSE, "", ""};
+  AppKnown known = {0, 0, NULL, PETSC_FALSE};
   int exitcode = 0, petscargc = 1;
   PetscErrorCode ierr;
   char **petscargv = argv;
@@ -136,15 +139,17 @@ int main(int argc, char **argv)
   if (MPI_Init(&argc, &argv)) return APP_EXIT_USER;
   if (PetscInitialize(&petscargc, &petscargv, NULL, NULL)) return APP_EXIT_USER;
   if (AppErrorInstall(&errors)) return APP_EXIT_USER;
+  signal(SIGPIPE, SIG_DFL); /* frond -help | head */
   ierr = PetscOptionsInsertArgs(NULL, argc - 1, argv + 1);
   (void)PetscOptionsClearValue(NULL, "-help"); /* our own help comes first, see execute() */
-  if (!ierr) ierr = execute(argc, argv, &errors, &exitcode);
+  if (!ierr) ierr = execute(argc, argv, &errors, &known, &exitcode);
   if (ierr) {
     AppErrors first = errors;
-    if (!errors.trace) add_misspelt(&first);
+    if (!errors.trace) add_misspelt(&known, &first);
     exitcode = AppErrorReport(&first, ierr);
   } else if (PetscFinalize())
     exitcode = APP_EXIT_USER;
+  AppKnownFree(&known);
   MPI_Finalize();
   return exitcode;
 }
