@@ -60,6 +60,7 @@ PetscErrorCode CoupleAddSurface(Couple c, CoupleSurface surface)
     PetscCall(PetscFree(c->slot));
     c->slot = slot;
   }
+  surface->refct++;
   c->slot[c->n++].surface = surface;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -67,7 +67,7 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char na
 
 FROND_EXTERN PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple);
 FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
-/* The couple destroys the surfaces it was given. */
+/* The couple keeps a reference of its own: destroy yours as well. */
 FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
 /* Upper bound on the step, s; PETSC_DECIDE for none. */
 FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax);

@@ -10,6 +10,7 @@ struct _p_CoupleSurface {
   CoupleSurfaceOps ops;
   void *ctx;
   PetscBool held;
+  PetscInt refct;
 };
 
 typedef struct {

@@ -18,6 +18,7 @@ PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const Coupl
   PetscCall(PetscStrncpy(s->name, name, sizeof(s->name)));
   s->ops = *ops;
   s->ctx = ctx;
+  s->refct = 1;
   *surface = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -47,6 +48,10 @@ PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface)
 {
   PetscFunctionBegin;
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
+  if (--(*surface)->refct > 0) {
+    *surface = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if ((*surface)->ops.destroy) PetscCall((*(*surface)->ops.destroy)(*surface));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
