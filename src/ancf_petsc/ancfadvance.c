@@ -111,9 +111,17 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
   if (!fixedstep && ancf->step > 0) dt = PetscMin(ancf->step, t - t0);
   PetscCall(AncfSetNewtonFloor(ancf, dt));
-  PetscCall(TSSetMaxTime(ancf->ts, t));
   PetscCall(TSSetTimeStep(ancf->ts, dt));
+  if (ancf->form == ANCF_FORM_SYMPLECTIC) { /* sums its stages' times and matches no final time: count steps instead */
+    PetscInt steps;
+
+    PetscCall(TSGetStepNumber(ancf->ts, &steps));
+    PetscCall(TSSetMaxSteps(ancf->ts, steps + ancf->substeps));
+    PetscCall(TSSetMaxTime(ancf->ts, t + dt));
+  } else
+    PetscCall(TSSetMaxTime(ancf->ts, t));
   PetscCall(TSSolve(ancf->ts, NULL));
+  if (ancf->form == ANCF_FORM_SYMPLECTIC) PetscCall(TSSetTime(ancf->ts, t));
   PetscCall(TSGetConvergedReason(ancf->ts, &reason));
   if (reason < 0) PetscCall(AncfFail(ancf, t0, reason));
   PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));

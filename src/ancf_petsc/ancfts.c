@@ -11,13 +11,19 @@ static const struct {
   const char *type;
   AncfForm form;
 } ancf_types[] = {
-    {TSALPHA2, ANCF_FORM_SECOND},  {TSBEULER, ANCF_FORM_FIRST},
-    {TSCN, ANCF_FORM_FIRST},       {TSTHETA, ANCF_FORM_FIRST},
-    {TSBDF, ANCF_FORM_FIRST},      {TSALPHA, ANCF_FORM_FIRST},
-    {TSARKIMEX, ANCF_FORM_FIRST},  {"dirk", ANCF_FORM_FIRST},
-    {TSROSW, ANCF_FORM_FIRST},     {TSIRK, ANCF_FORM_FIRST},
-    {TSEULER, ANCF_FORM_EXPLICIT}, {TSRK, ANCF_FORM_EXPLICIT},
-    {TSSSP, ANCF_FORM_EXPLICIT},   {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC},
+    {TSALPHA2, ANCF_FORM_SECOND},
+    {TSBEULER, ANCF_FORM_FIRST},
+    {TSCN, ANCF_FORM_FIRST},
+    {TSTHETA, ANCF_FORM_FIRST},
+    {TSBDF, ANCF_FORM_FIRST},
+    {TSALPHA, ANCF_FORM_FIRST},
+    {TSARKIMEX, ANCF_FORM_FIRST},
+    {"dirk", ANCF_FORM_FIRST},
+    {TSROSW, ANCF_FORM_FIRST},
+    {TSEULER, ANCF_FORM_EXPLICIT},
+    {TSRK, ANCF_FORM_EXPLICIT},
+    {TSSSP, ANCF_FORM_EXPLICIT},
+    {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC},
 };
 
 /* Coordinates x of a node as the beams see them: eliminated ones are replaced by fix (NULL: zero). */
@@ -380,7 +386,6 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(TSGetAdapt(ancf->ts, &adapt));
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
   PetscCall(TSGetSNES(ancf->ts, &snes));
-  PetscCall(SNESSetType(snes, SNESNEWTONLS));
   PetscCall(SNESSetTolerances(snes, 1e-50, 1e-9, 1e-12, 25, 10000));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
@@ -465,6 +470,33 @@ static PetscErrorCode AncfChooseForm(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  TSARKIMEX accepts a mass matrix other than the identity only in tableaux without an explicit first stage; l2 (L-stable,
+  second order) is our default among them.
+*/
+static PetscErrorCode AncfChooseARKIMEX(Ancf ancf)
+{
+  const char *const fit[] = {TSARKIMEXL2, TSARKIMEX1BEE, TSARKIMEXPRSSP2};
+  TSARKIMEXType type;
+  const char *prefix;
+  PetscBool is, given;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSARKIMEX, &is));
+  if (!is) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TSARKIMEXGetType(ancf->ts, &type));
+  for (int k = 0; k < 3; k++) {
+    PetscCall(PetscStrcmp(type, fit[k], &is));
+    if (is) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(TSGetOptionsPrefix(ancf->ts, &prefix));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_arkimex_type", &given));
+  PetscCheck(!given, ancf->comm, PETSC_ERR_ARG_WRONG,
+             "-ancf_ts_arkimex_type %s cannot take the mass matrix of beams; use one of: l2 1bee prssp2", type);
+  PetscCall(TSARKIMEXSetType(ancf->ts, TSARKIMEXL2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfTSSetUp(Ancf ancf)
 {
   const PetscInt n = 6 * ancf->nnodes;
@@ -473,6 +505,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * n, &ancf->backup));
   PetscCall(AncfChooseForm(ancf));
+  PetscCall(AncfChooseARKIMEX(ancf));
   if (ancf->form == ANCF_FORM_SECOND) {
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->e, &ancf->U));
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->v, &ancf->V));
