@@ -87,7 +87,7 @@ PetscErrorCode AppSceneDestroy(AppScene *scene);
 typedef struct {
   char name[APP_NAME_LEN + 8];
   CoupleSurface surface;
-  PetscInt markers;
+  PetscInt markers, group; /* group: of its markers in the fluid */
 } AppSurface;
 typedef struct {
   AppScene scene;

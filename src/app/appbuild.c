@@ -192,14 +192,13 @@ static PetscErrorCode fill_fluid(App *app)
 
 /* --- surfaces -------------------------------------------------------------------------------------------------- */
 
-static PetscErrorCode add_surface(App *app, const char name[], PetscInt markers, CoupleSurface surface)
+static PetscErrorCode add_surface(App *app, const char name[], CoupleSurface surface)
 {
   AppSurface *at = &app->surfaces[app->nsurfaces++];
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(at->name, name, sizeof(at->name)));
   at->surface = surface;
-  at->markers = markers;
   PetscCall(CoupleAddSurface(app->couple, surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -246,12 +245,35 @@ static PetscErrorCode add_walls(App *app)
     if (!m) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "wall_%s", SceneFaces[f]));
     PetscCall(CoupleSurfaceCreateWall(PETSC_COMM_SELF, name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
-    PetscCall(add_surface(app, name, m, surface));
+    PetscCall(add_surface(app, name, surface));
   }
   PetscCall(PetscFree3(fx, fvolume, fdepth));
   PetscCall(PetscFree(x));
   PetscCall(PetscFree(volume));
   PetscCall(PetscFree(depth));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many markers each surface has. */
+static PetscErrorCode count_surfaces(App *app)
+{
+  PetscInt  n, group, *groups;
+  SphFields f;
+
+  PetscFunctionBegin;
+  PetscCall(SphGetCounts(app->sph, &app->nfluid, &app->nboundary, NULL));
+  n = app->nfluid + app->nboundary;
+  PetscCall(PetscMalloc1(n, &groups));
+  PetscCall(PetscMemzero(&f, sizeof(f)));
+  f.group = groups;
+  PetscCall(SphGetFields(app->sph, &f));
+  for (PetscInt i = 0; i < app->nsurfaces; i++) {
+    PetscCall(CoupleGetSurface(app->couple, i, NULL, &group));
+    app->surfaces[i].markers = 0;
+    app->surfaces[i].group = group;
+    for (PetscInt k = 0; k < n; k++) app->surfaces[i].markers += groups[k] == group;
+  }
+  PetscCall(PetscFree(groups));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -274,16 +296,16 @@ static PetscErrorCode build_couple(App *app)
   for (PetscInt b = 0; b < s->nbeams; b++) {
     AppDoing(app, "beam '%s'", s->beams[b].name);
     PetscCall(CoupleSurfaceCreateBeam(app->ancf, b, app->dim, dp, support, &surface));
-    PetscCall(add_surface(app, s->beams[b].name, 0, surface));
+    PetscCall(add_surface(app, s->beams[b].name, surface));
   }
   for (PetscInt b = 0; b < s->nbodies; b++) {
     AppDoing(app, "body '%s'", s->bodies[b].name);
     PetscCall(CoupleSurfaceCreateRigid(app->rigid, b, app->dim, dp, support, &surface));
-    PetscCall(add_surface(app, s->bodies[b].name, 0, surface));
+    PetscCall(add_surface(app, s->bodies[b].name, surface));
   }
   AppDoing(app, "%s", "");
   PetscCall(CoupleSetUp(app->couple));
-  PetscCall(SphGetCounts(app->sph, &app->nfluid, &app->nboundary, NULL));
+  PetscCall(count_surfaces(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -362,14 +384,13 @@ PetscErrorCode AppInjectFault(App *app)
 
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3])
 {
-  const PetscReal *e, *edot, *eddot;
-  PetscReal l, t, S[4], Sx[4];
+  const PetscReal *e, *edot;
+  PetscReal l, S[4], Sx[4];
   PetscInt first, k, ne = app->scene.beams[beam].spec.elements;
-  AncfBeamSpec spec;
 
   PetscFunctionBegin;
-  PetscCall(AncfGetBeam(app->ancf, beam, &spec, &first, &l));
-  PetscCall(AncfGetState(app->ancf, &t, &e, &edot, &eddot));
+  PetscCall(AncfGetBeam(app->ancf, beam, NULL, &first, &l));
+  PetscCall(AncfGetState(app->ancf, NULL, &e, &edot, NULL));
   k = PetscMin((PetscInt)(s / l), ne - 1);
   AncfShape(s / l - (PetscReal)k, l, S);
   AncfShapeX(s / l - (PetscReal)k, l, Sx);

@@ -129,6 +129,7 @@ static PetscErrorCode write_markers(AppOutput out, App *app, int64_t file)
 {
   const PetscBool *want = app->scene.field;
   PetscInt n = out->nmarkers;
+  PetscReal dp;
   SphFields all;
   int64_t g;
 
@@ -162,9 +163,11 @@ static PetscErrorCode write_markers(AppOutput out, App *app, int64_t file)
   if (want[FIELD_ACCELERATION])
     PetscCall(AppH5Real(g, &(H5Label){"acceleration", "m/s^2", "right-hand side of the momentum equation at the last evaluation"},
                         PETSC_TRUE, n, 3, out->vector));
+  PetscCall(SphGetSpacing(app->sph, &dp));
+  PetscCall(AppH5AttrReal(g, "spacing", dp));
   for (PetscInt i = 0; i < app->nsurfaces; i++) {
     char key[32];
-    PetscCall(PetscSNPrintf(key, sizeof(key), "group_%" PetscInt_FMT "", i));
+    PetscCall(PetscSNPrintf(key, sizeof(key), "group_%" PetscInt_FMT "", app->surfaces[i].group));
     PetscCall(AppH5AttrString(g, key, app->surfaces[i].name));
   }
   PetscCall(AppH5GroupClose(g));

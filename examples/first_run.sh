@@ -1,0 +1,11 @@
+#!/bin/sh
+# From a fresh clone on Debian 12 to the first pictures: packages, build, the cantilever in a viscous fluid, plots.
+set -eu
+cd "$(dirname "$0")/.."
+. cmake/debian.sh
+
+frond_install $frond_packages
+frond_build build -DBUILD_TESTING=OFF
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-$(nproc)}"
+build/bin/frond run examples/cantilever_fluid.yaml -output_dir out_cantilever_fluid -output_overwrite
+/usr/bin/python3 examples/plot_run.py out_cantilever_fluid
