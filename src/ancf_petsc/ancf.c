@@ -47,6 +47,7 @@ PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf)
   PetscCall(PetscNew(&a));
   a->comm = comm;
   a->substeps = 1;
+  a->loadscale = 1;
   a->naxial = ANCF_DEFAULT_AXIAL;
   a->nbending = ANCF_DEFAULT_BENDING;
   PetscCall(AncfTSCreate(a));

@@ -66,6 +66,11 @@ FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
 /* Integrate from the current time to t with `substeps` TS steps (or adaptively). */
 FROND_EXTERN PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t);
 
+/* Static equilibrium under the present loads and gravity, from the present shape; velocities become zero. The loads are
+   applied in equal steps, each halved when Newton fails. PETSC_ERR_NOT_CONVERGED when no equilibrium is found, as for
+   beams without enough supports. Options: -ancf_static_snes_..., -ancf_static_ksp_.... */
+FROND_EXTERN PetscErrorCode AncfSolveStatic(Ancf ancf, PetscInt loadsteps);
+
 /* Energies, J: kinetic, elastic (axial + bending), potential (-sum rho_s A g.r, buoyancy-reduced). */
 FROND_EXTERN PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, PetscReal *potential);
 /* Total linear momentum (kg m/s) and angular momentum about the origin (kg m^2/s); either may be NULL. */

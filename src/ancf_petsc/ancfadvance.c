@@ -27,17 +27,15 @@ static PetscErrorCode AncfSetNewtonFloor(Ancf ancf, PetscReal dt)
 }
 
 /* The node with the largest residual of the last Newton iterate, a NaN counting as largest. */
-static PetscErrorCode AncfWorstNode(Ancf ancf, PetscInt *node, PetscReal *size)
+PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size)
 {
   Vec F = NULL;
-  SNES snes;
   const PetscScalar *f;
   PetscInt n, bs;
 
   PetscFunctionBegin;
   *node = -1;
   *size = 0;
-  PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
   if (!F) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetLocalSize(F, &n));
@@ -82,7 +80,7 @@ static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason
   PetscCall(TSGetTimeStep(ancf->ts, &dt));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetConvergedReason(snes, &why));
-  PetscCall(AncfWorstNode(ancf, &node, &size));
+  PetscCall(AncfWorstNode(ancf, snes, &node, &size));
   PetscCall(AncfRestore(ancf, t0));
   PetscCheck(node >= 0, ancf->comm, PETSC_ERR_NOT_CONVERGED, "Beam step at t = %g s failed: %s", (double)t,
              TSConvergedReasons[reason]);

@@ -42,6 +42,7 @@ struct _p_Ancf {
   PetscReal t;
   PetscReal *e, *v, *a; /* state, nodes x 6 */
   PetscBool avalid;
+  PetscReal loadscale;      /* of Q^a and Q^g; 1 but for the load steps of AncfSolveStatic() */
   PetscReal *load, *weight; /* Q^a, Q^g */
   PetscReal *rest;          /* values of the eliminated coordinates */
   unsigned char *fixed;     /* per node, ANCF_FIX_* */
@@ -84,7 +85,14 @@ extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscRea
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 
+/* P = tangent + shift M; diag on the diagonal of eliminated coordinates. Form and stride follow from the block size of P. */
+extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P);
+extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, Mat *J);
+/* Rows of eliminated coordinates: f = x, or 0 when x is NULL. */
+extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
+
 /* ancfadvance.c */
+extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
 extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
 
 /* ancfmass.c */

@@ -78,10 +78,12 @@ PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
 
 PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f, PetscInt fstride)
 {
+  const PetscReal scale = ancf->loadscale;
+
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
-    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -ancf->weight[6 * j + c] - ancf->load[6 * j + c];
+    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->weight[6 * j + c] + ancf->load[6 * j + c]);
   for (PetscInt k = 0; k < ancf->nbatches; k++) {
     const AncfBatch *b = &ancf->batches[k];
     AncfSection s = BatchSection(b);
@@ -105,7 +107,7 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
 }
 
 /* Rows of eliminated coordinates: f = x; x NULL: f = 0. */
-static void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
+void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
 {
   for (PetscInt j = 0; j < ancf->nnodes; j++) {
     unsigned char fix = ancf->fixed[j];
@@ -143,11 +145,12 @@ static inline void AncfElementMatrix(Ancf ancf, const AncfBatch *b, PetscInt lan
 */
 static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P)
 {
-  const PetscInt bs = ancf->form == ANCF_FORM_SECOND ? 6 : 12;
   PetscReal k[144], m[144], blk[576];
   AncfLanes zero[ANCF_TANGENT] = {{0}};
+  PetscInt bs;
 
   PetscFunctionBegin;
+  PetscCall(MatGetBlockSize(P, &bs));
   for (PetscInt n = 0; n < ancf->nbatches; n++) {
     const AncfBatch *b = &ancf->batches[n];
     AncfSection s = BatchSection(b);
@@ -182,10 +185,11 @@ static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscI
 /* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
 static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
 {
-  const PetscInt bs = ancf->form == ANCF_FORM_SECOND ? 6 : 12;
   PetscReal blk[144];
+  PetscInt bs;
 
   PetscFunctionBegin;
+  PetscCall(MatGetBlockSize(P, &bs));
   for (PetscInt j = 0; j < ancf->nnodes; j++) {
     if (bs == 6 && !ancf->fixed[j]) continue;
     PetscCall(PetscArrayzero(blk, 144));
@@ -201,13 +205,13 @@ static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat J, Mat P)
+PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(ANCF_Tangent, 0, 0, 0, 0));
   PetscCall(MatZeroEntries(P));
   PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
-  PetscCall(AncfAssembleNodes(ancf, shift, P));
+  PetscCall(AncfAssembleNodes(ancf, diag, P));
   PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
   if (J != P) {
@@ -252,7 +256,7 @@ static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, Pe
   (void)A;
   (void)shiftV;
   PetscCall(VecGetArrayRead(U, &u));
-  PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, J, P));
+  PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, shiftA, J, P));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -289,7 +293,7 @@ static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscRe
   (void)t;
   (void)Ydot;
   PetscCall(VecGetArrayRead(Y, &y));
-  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift, J, P));
+  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift, shift, J, P));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -405,7 +409,7 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs)
+PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, Mat *J)
 {
   PetscInt n = bs * ancf->nnodes, *nnz;
 
@@ -416,14 +420,14 @@ static PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs)
 
     for (PetscInt k = 0; k <= m->spec.elements; k++) nnz[m->node + k] = 3 - (k == 0) - (k == m->spec.elements);
   }
-  PetscCall(MatCreate(ancf->comm, &ancf->J));
-  PetscCall(MatSetSizes(ancf->J, n, n, n, n));
-  PetscCall(MatSetBlockSize(ancf->J, bs));
-  PetscCall(MatSetType(ancf->J, MATSEQBAIJ));
-  PetscCall(MatSetOptionsPrefix(ancf->J, ancf->prefix));
-  PetscCall(MatAppendOptionsPrefix(ancf->J, "ancf_"));
-  PetscCall(MatSetFromOptions(ancf->J));
-  PetscCall(MatXAIJSetPreallocation(ancf->J, bs, nnz, NULL, NULL, NULL));
+  PetscCall(MatCreate(ancf->comm, J));
+  PetscCall(MatSetSizes(*J, n, n, n, n));
+  PetscCall(MatSetBlockSize(*J, bs));
+  PetscCall(MatSetType(*J, MATSEQBAIJ));
+  PetscCall(MatSetOptionsPrefix(*J, ancf->prefix));
+  PetscCall(MatAppendOptionsPrefix(*J, "ancf_"));
+  PetscCall(MatSetFromOptions(*J));
+  PetscCall(MatXAIJSetPreallocation(*J, bs, nnz, NULL, NULL, NULL));
   PetscCall(PetscFree(nnz));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -509,7 +513,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   if (ancf->form == ANCF_FORM_SECOND) {
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->e, &ancf->U));
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->v, &ancf->V));
-    PetscCall(AncfCreateMatrix(ancf, 6));
+    PetscCall(AncfCreateMatrix(ancf, 6, &ancf->J));
     PetscCall(TSSetI2Function(ancf->ts, NULL, AncfI2Function, ancf));
     PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
@@ -518,7 +522,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {
-      PetscCall(AncfCreateMatrix(ancf, 12));
+      PetscCall(AncfCreateMatrix(ancf, 12, &ancf->J));
       PetscCall(TSSetEquationType(ancf->ts, TS_EQ_ODE_IMPLICIT));
       PetscCall(TSSetIFunction(ancf->ts, NULL, AncfIFunction, ancf));
       PetscCall(TSSetIJacobian(ancf->ts, ancf->J, ancf->J, AncfIJacobian, ancf));

@@ -1,0 +1,134 @@
+/* ancfstatic.c - static equilibrium Q^e(e) = Q^a + Q^g by Newton's method with load steps. */
+#include "ancfimpl.h"
+
+static PetscErrorCode StaticFunction(SNES snes, Vec X, Vec F, void *ctx)
+{
+  Ancf ancf = (Ancf)ctx;
+  const PetscScalar *x;
+  PetscScalar *f;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(F, &f));
+  PetscCall(AncfResidual(ancf, x, NULL, 6, f, 6));
+  AncfFixRows(ancf, NULL, 0, f, 6);
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StaticJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
+{
+  const PetscScalar *x;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(AncfAssemble((Ancf)ctx, x, 6, 0, 1, J, P));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StaticCreate(Ancf ancf, SNES *snes, Vec *X, Mat *J)
+{
+  SNESLineSearch search;
+  KSP ksp;
+  PC pc;
+  PetscReal EA = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < ancf->nbeams; b++) EA = PetscMax(EA, ancf->beams[b].EA);
+  PetscCall(VecCreateSeq(ancf->comm, 6 * ancf->nnodes, X));
+  PetscCall(AncfCreateMatrix(ancf, 6, J));
+  PetscCall(SNESCreate(ancf->comm, snes));
+  PetscCall(SNESSetOptionsPrefix(*snes, ancf->prefix));
+  PetscCall(SNESAppendOptionsPrefix(*snes, "ancf_static_"));
+  PetscCall(SNESSetFunction(*snes, NULL, StaticFunction, ancf));
+  PetscCall(SNESSetJacobian(*snes, *J, *J, StaticJacobian, ancf));
+  /* Full steps: bending first stretches the chord, so that the residual rises before it falls. */
+  PetscCall(SNESGetLineSearch(*snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  PetscCall(
+      SNESSetTolerances(*snes, 4 * PETSC_MACHINE_EPSILON * EA * PetscSqrtReal((PetscReal)ancf->nnodes), 1e-10, 1e-13, 40, 10000));
+  PetscCall(SNESSetDivergenceTolerance(*snes, -1));
+  PetscCall(SNESGetKSP(*snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCILU));
+  PetscCall(SNESSetFromOptions(*snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From load factor 0 to 1; a failed step is halved and tried again from the last equilibrium. */
+static PetscErrorCode StaticSteps(Ancf ancf, SNES snes, Vec X, PetscReal step, SNESConvergedReason *reason)
+{
+  PetscReal done = 0;
+  Vec good;
+
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(X, &good));
+  PetscCall(VecCopy(X, good));
+  while (done < 1 && step > 1e-4) {
+    PetscReal norm;
+
+    ancf->loadscale = PetscMin(1, done + step);
+    if (1 - ancf->loadscale < 1e-12) ancf->loadscale = 1;
+    PetscCall(SNESSolve(snes, NULL, X));
+    PetscCall(SNESGetConvergedReason(snes, reason));
+    PetscCall(VecNorm(X, NORM_INFINITY, &norm));
+    if (*reason > 0 && !PetscIsInfOrNanReal(norm)) {
+      done = ancf->loadscale;
+      PetscCall(VecCopy(X, good));
+    } else {
+      step /= 2;
+      if (*reason > 0) *reason = SNES_DIVERGED_FNORM_NAN;
+      PetscCall(VecCopy(good, X));
+    }
+  }
+  ancf->loadscale = 1;
+  PetscCall(VecDestroy(&good));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfSolveStatic(Ancf ancf, PetscInt loadsteps)
+{
+  const PetscInt n = 6 * ancf->nnodes;
+  SNES snes;
+  Vec X;
+  Mat J;
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscScalar *x;
+  PetscReal size;
+  PetscInt node;
+
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSolveStatic: call AncfSetUp() first");
+  PetscCheck(loadsteps >= 1, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "AncfSolveStatic: load steps %" PetscInt_FMT " must be at least 1", loadsteps);
+  PetscCall(AncfCheckFinite(ancf, "load", ancf->load, ancf->t));
+  PetscCall(StaticCreate(ancf, &snes, &X, &J));
+  PetscCall(VecGetArrayWrite(X, &x));
+  PetscCall(PetscArraycpy(x, ancf->e, n));
+  PetscCall(VecRestoreArrayWrite(X, &x));
+  PetscCall(StaticSteps(ancf, snes, X, 1 / (PetscReal)loadsteps, &reason));
+  PetscCall(AncfWorstNode(ancf, snes, &node, &size));
+  if (reason > 0) {
+    PetscCall(VecGetArray(X, &x));
+    PetscCall(PetscArrayzero(ancf->v, n));
+    PetscCall(AncfSetState(ancf, ancf->t, x, ancf->v));
+    PetscCall(VecRestoreArray(X, &x));
+  }
+  PetscCall(SNESDestroy(&snes));
+  PetscCall(VecDestroy(&X));
+  PetscCall(MatDestroy(&J));
+  if (reason < 0) {
+    PetscInt b = AncfFindBeam(ancf, PetscMax(node, 0));
+
+    SETERRQ(ancf->comm, PETSC_ERR_NOT_CONVERGED,
+            "No static equilibrium (%s): largest residual %g N at beam %" PetscInt_FMT ", node %" PetscInt_FMT
+            "; are the supports enough?",
+            SNESConvergedReasons[reason], (double)size, b, PetscMax(node, 0) - ancf->beams[b].node);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
