@@ -1,0 +1,74 @@
+/* ancf_common.h - helpers of the beam tests: the seed's cantilever, error capture, random numbers. */
+#ifndef ANCF_COMMON_H
+#define ANCF_COMMON_H
+
+#include "ancf.h"
+#include "testing.h"
+#include <string.h>
+
+/* Seed Sect. 4: L = 1 m, d = 0.04 m, rho_s = 7200 kg/m^3, E = 20 MPa, along x, clamped at the origin. */
+static inline PetscErrorCode SeedSpec(PetscInt elements, AncfBeamSpec *s)
+{
+  PetscFunctionBegin;
+  PetscCall(AncfBeamSpecInit(s));
+  s->end[0] = 1;
+  s->elements = elements;
+  s->diameter = 0.04;
+  s->density = 7200;
+  s->young = 20e6;
+  s->end0 = ANCF_END_CLAMP;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One beam, gravity gz along z, options of the test program's own string. */
+static inline PetscErrorCode BeamCreate(const AncfBeamSpec *s, PetscReal gz, const char options[], Ancf *ancf)
+{
+  PetscReal g[3] = {0, 0, gz};
+
+  PetscFunctionBegin;
+  PetscCall(AncfCreate(PETSC_COMM_SELF, ancf));
+  PetscCall(AncfAddBeam(*ancf, s, NULL));
+  PetscCall(AncfSetGravity(*ancf, g));
+  PetscCall(PetscOptionsPush(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, options));
+  PetscCall(AncfSetFromOptions(*ancf));
+  PetscCall(AncfSetUp(*ancf));
+  PetscCall(PetscOptionsPop());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PETSC_UNUSED static char test_message[2048]; /* of the last error caught */
+
+static inline PetscErrorCode TestCatch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
+{
+  (void)comm;
+  (void)line;
+  (void)fun;
+  (void)file;
+  (void)ctx;
+  if (p == PETSC_ERROR_INITIAL && mess) snprintf(test_message, sizeof(test_message), "%s", mess);
+  return n;
+}
+
+/* The call must fail with this code, and its one-line message must name the word. */
+#define TEST_ERROR(call, code, word) \
+  do { \
+    PetscErrorCode te_; \
+    test_message[0] = 0; \
+    PetscCall(PetscPushErrorHandler(TestCatch, NULL)); \
+    te_ = call; \
+    PetscCall(PetscPopErrorHandler()); \
+    TEST(te_ == (code), "%s returned %d, expected %d", #call, (int)te_, (int)(code)); \
+    TEST(strstr(test_message, word) != NULL, "message '%s' does not name '%s'", test_message, word); \
+  } while (0)
+
+/* Reproducible uniform numbers in [-1,1): 64-bit linear congruential generator. */
+static inline double Random(void)
+{
+  static unsigned long long s = 88172645463325252ULL;
+
+  s = s * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (double)(s >> 11) / 4503599627370496.0 - 1;
+}
+
+#endif
