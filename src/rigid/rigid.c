@@ -3,7 +3,7 @@
 
   Every rank of the communicator holds every body and must make the same calls: the bodies are replicated, not distributed.
 */
-#include "rigidimpl.h"
+#include "rigidgeometry.h"
 
 PetscLogEvent RIGID_Advance, RIGID_Fill;
 
@@ -85,6 +85,8 @@ PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec, PetscInt *bo
   b->spec = *spec;
   for (PetscInt k = RigidShapeNumSizes(spec->shape, rigid->dim); k < 3; k++) b->spec.size[k] = 0.;
   if (rigid->dim == 2) b->spec.lock[2] = b->spec.lock[3] = b->spec.lock[4] = PETSC_TRUE;
+  if (spec->geometry) PetscCall(RigidGeometryReference(spec->geometry));
+  if (spec->shape == RIGID_COMPOSITE) b->spec.density = spec->geometry->density;
   b->volume = RigidShapeVolume(&b->spec, rigid->dim);
   if (body) *body = rigid->n;
   rigid->n++;
@@ -158,6 +160,11 @@ static PetscErrorCode BodySetUp(Rigid rigid, PetscInt i)
                i, (double)s->inertia[0], (double)s->inertia[1], (double)s->inertia[2]);
   }
   QuatExp(v, b->q);
+  if (s->geometry) {
+    PetscReal q[4];
+    QuatMult(b->q, s->geometry->q, q);
+    PetscCall(PetscArraycpy(b->q, q, 4));
+  }
   QuatNormalize(b->q);
   RigidBodySetOmega(b, s->omega);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -228,6 +235,7 @@ PetscErrorCode RigidDestroy(Rigid *rigid)
 {
   PetscFunctionBegin;
   if (!*rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < (*rigid)->n; i++) PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
   PetscCall(PetscFree((*rigid)->prefix));
   PetscCall(PetscFree((*rigid)->body));
   PetscCall(PetscFree(*rigid));
@@ -414,7 +422,8 @@ PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* J. Kinetic energy of free and prescribed bodies; potential -(m - rho V) g.X of the free ones. Each may be NULL. */
+/* J. Kinetic energy of free and prescribed bodies; potential -g.(m X - rho V X_v) of the free ones, X_v the centroid of the
+ * volume. Each may be NULL. */
 PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, PetscReal *potential)
 {
   PetscReal ke = 0., pe = 0.;
@@ -423,13 +432,12 @@ PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, PetscReal *potent
   PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
   for (PetscInt i = 0; i < rigid->n; i++) {
     const RigidBody *b = &rigid->body[i];
-    PetscReal w[3], wb[3], F[3];
+    PetscReal w[3], wb[3];
     RigidBodyOmega(b, b->q, w);
     QuatRotateBack(b->q, w, wb);
     ke += .5 * b->spec.mass * Vec3Dot(b->V, b->V);
     for (int k = 0; k < 3; k++) ke += .5 * b->spec.inertia[k] * wb[k] * wb[k];
-    RigidBodyWeight(rigid, b, F);
-    if (b->spec.motion == RIGID_FREE) pe -= Vec3Dot(F, b->X);
+    if (b->spec.motion == RIGID_FREE) pe += RigidBodyPotential(rigid, b);
   }
   if (kinetic) *kinetic = ke;
   if (potential) *potential = pe;

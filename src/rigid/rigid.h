@@ -13,7 +13,9 @@
 
 typedef struct _p_Rigid *Rigid;
 
-typedef enum { RIGID_SPHERE, RIGID_BOX, RIGID_CYLINDER, RIGID_ELLIPSOID, RIGID_CAPSULE } RigidShape;
+typedef struct _p_RigidGeometry *RigidGeometry; /* closed surface mesh or composite of shapes; references are counted */
+
+typedef enum { RIGID_SPHERE, RIGID_BOX, RIGID_CYLINDER, RIGID_ELLIPSOID, RIGID_CAPSULE, RIGID_MESH, RIGID_COMPOSITE } RigidShape;
 /* Fixed: never moves. Prescribed: velocity and angular velocity (space frame) constant. Free: Newton-Euler. */
 typedef enum { RIGID_FIXED, RIGID_PRESCRIBED, RIGID_FREE } RigidMotion;
 
@@ -34,7 +36,32 @@ typedef struct {
   PetscReal mass;         /* kg; PETSC_DECIDE: from density and shape */
   PetscReal inertia[3];   /* principal moments, kg m^2; PETSC_DECIDE each: from mass and shape, homogeneous */
   PetscBool lock[6];      /* free bodies: no velocity along x, y, z, no angular velocity about x, y, z (space frame) */
+  RigidGeometry geometry; /* mesh, composite: the shape, and size is not used; NULL for the others */
 } RigidBodySpec;
+
+/*
+  Closed surface from an STL file (text or binary), coordinates times scale giving metres; or from nv vertices x (nv x 3, m)
+  and nf facets (nf x 3 vertex numbers, counter-clockwise from outside). Refused, naming facet or edge: surfaces that are
+  open or not consistently oriented, facets without area. Not found: surfaces that cut themselves. The body frame is that
+  of the principal axes; RigidGeometryGetPlacement() tells where its origin lies and how it is turned in the mesh's own
+  frame, in which RigidBodySpec.axisangle acts; RigidBodySpec.position is where the centre of mass goes.
+*/
+FROND_EXTERN PetscErrorCode RigidGeometryCreateSTL(MPI_Comm comm, const char filename[], PetscReal scale,
+                                                   RigidGeometry *geometry);
+FROND_EXTERN PetscErrorCode RigidGeometryCreateMesh(MPI_Comm comm, PetscInt nv, const PetscReal x[], PetscInt nf,
+                                                    const PetscInt facets[], RigidGeometry *geometry);
+/*
+  Rigid union of n shapes (no mesh, no composite) at their position and axisangle, each of its own density; they may touch
+  but not overlap (refused, naming both). The body's density becomes the mean one. Where parts touch, the depth below the
+  surface is that in the deepest part.
+*/
+FROND_EXTERN PetscErrorCode RigidGeometryCreateComposite(MPI_Comm comm, PetscInt dim, PetscInt n, const RigidBodySpec parts[],
+                                                         RigidGeometry *geometry);
+/* Volume (m^3; m^2 in 2D), centre of mass (m) and orientation of the body frame in the frame of the mesh or the parts; each
+   may be NULL. */
+FROND_EXTERN PetscErrorCode RigidGeometryGetPlacement(RigidGeometry geometry, PetscReal *volume, PetscReal center[3],
+                                                      PetscReal q[4]);
+FROND_EXTERN PetscErrorCode RigidGeometryDestroy(RigidGeometry *geometry);
 
 FROND_EXTERN PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid);
 FROND_EXTERN PetscErrorCode RigidSetOptionsPrefix(Rigid rigid, const char prefix[]);

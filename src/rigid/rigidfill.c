@@ -8,17 +8,13 @@
   Box, axial direction of a cylinder: edges are divided evenly into round(edge/dp) cells, which are multiples of dp.
   Ellipsoid: layers lie between the ellipsoids of semi-axes a_i - k dp and a_i - (k+1) dp. These are not parallel surfaces:
   such a layer is dp thick at the six poles and up to a few percent thinner between them. The recorded depth is exact.
+  Mesh, composite: see rigidpack.c.
 */
 #include "rigidimpl.h"
 
 #define SLACK (1. + 1.e-9) /* so that sizes which are multiples of dp are not lost to round-off */
 
-typedef struct {
-  PetscInt n, nalloc;
-  PetscReal *x, *volume, *depth;
-} Markers;
-
-static PetscErrorCode MarkersAdd(Markers *m, PetscReal x, PetscReal y, PetscReal z, PetscReal volume)
+PetscErrorCode RigidMarkersAdd(RigidMarkers *m, PetscReal x, PetscReal y, PetscReal z, PetscReal volume)
 {
   PetscFunctionBegin;
   if (m->n == m->nalloc) {
@@ -39,7 +35,7 @@ static PetscInt RoundToOne(PetscReal x)
 }
 
 /* Markers on a circle of radius rho at height z, spaced about dp; one goes to the axis, two are kept dp apart. */
-static PetscErrorCode Ring(Markers *m, PetscReal dp, PetscReal rho, PetscReal z, PetscInt parity, PetscReal volume)
+static PetscErrorCode Ring(RigidMarkers *m, PetscReal dp, PetscReal rho, PetscReal z, PetscInt parity, PetscReal volume)
 {
   const PetscInt n = RoundToOne(2. * PETSC_PI * rho / dp);
 
@@ -48,7 +44,7 @@ static PetscErrorCode Ring(Markers *m, PetscReal dp, PetscReal rho, PetscReal z,
   if (n == 2) rho = PetscMax(rho, .5 * dp);
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal phi = 2. * PETSC_PI * ((PetscReal)i + .5 * (PetscReal)(parity % 2)) / (PetscReal)n;
-    PetscCall(MarkersAdd(m, rho * PetscCosReal(phi), rho * PetscSinReal(phi), z, volume / (PetscReal)n));
+    PetscCall(RigidMarkersAdd(m, rho * PetscCosReal(phi), rho * PetscSinReal(phi), z, volume / (PetscReal)n));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -85,14 +81,14 @@ static PetscReal CapsuleBand(PetscReal L, PetscReal rk, PetscReal ro, PetscReal 
 }
 
 /* A sphere is a capsule with L = 0. */
-static PetscErrorCode CapsuleLayer(Markers *m, PetscReal dp, PetscReal L, PetscReal ro, PetscReal ri, PetscReal rk)
+static PetscErrorCode CapsuleLayer(RigidMarkers *m, PetscReal dp, PetscReal L, PetscReal ro, PetscReal ri, PetscReal rk)
 {
   PetscFunctionBegin;
   if (rk <= 1.e-9 * dp) {
     const PetscInt n = RoundToOne((L + 2. * ro) / dp);
     const PetscReal v = PETSC_PI * (ro * ro * L + 4. / 3. * ro * ro * ro - ri * ri * L - 4. / 3. * ri * ri * ri);
     for (PetscInt i = 0; i < n; i++)
-      PetscCall(MarkersAdd(m, 0., 0., (L + 2. * ro) * (((PetscReal)i + .5) / (PetscReal)n - .5), v / (PetscReal)n));
+      PetscCall(RigidMarkersAdd(m, 0., 0., (L + 2. * ro) * (((PetscReal)i + .5) / (PetscReal)n - .5), v / (PetscReal)n));
   } else {
     const PetscReal c = .5 * PETSC_PI * rk, length = 2. * c + L;
     const PetscInt n = RoundToOne(length / dp);
@@ -113,7 +109,7 @@ static PetscErrorCode CapsuleLayer(Markers *m, PetscReal dp, PetscReal L, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillCapsule(Markers *m, PetscReal R, PetscReal L, PetscReal dp, PetscReal depthmax)
+static PetscErrorCode FillCapsule(RigidMarkers *m, PetscReal R, PetscReal L, PetscReal dp, PetscReal depthmax)
 {
   PetscReal ro, ri, rk;
 
@@ -123,7 +119,7 @@ static PetscErrorCode FillCapsule(Markers *m, PetscReal R, PetscReal L, PetscRea
 }
 
 /* One disc of a cylinder (dz thick; 1 in 2D) at height z. */
-static PetscErrorCode FillDisc(Markers *m, PetscReal R, PetscReal z, PetscReal dz, PetscInt parity, PetscReal dp,
+static PetscErrorCode FillDisc(RigidMarkers *m, PetscReal R, PetscReal z, PetscReal dz, PetscInt parity, PetscReal dp,
                                PetscReal depthmax)
 {
   PetscReal ro, ri, rk;
@@ -134,7 +130,7 @@ static PetscErrorCode FillDisc(Markers *m, PetscReal R, PetscReal z, PetscReal d
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillCylinder(Markers *m, PetscReal R, PetscReal L, PetscReal dp, PetscReal depthmax)
+static PetscErrorCode FillCylinder(RigidMarkers *m, PetscReal R, PetscReal L, PetscReal dp, PetscReal depthmax)
 {
   const PetscInt n = RoundToOne(L / dp);
   const PetscReal dz = L / (PetscReal)n;
@@ -148,7 +144,7 @@ static PetscErrorCode FillCylinder(Markers *m, PetscReal R, PetscReal L, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillBox(Markers *m, PetscInt dim, const PetscReal a[], PetscReal dp, PetscReal depthmax)
+static PetscErrorCode FillBox(RigidMarkers *m, PetscInt dim, const PetscReal a[], PetscReal dp, PetscReal depthmax)
 {
   PetscInt n[3] = {1, 1, 1};
   PetscReal d[3] = {0., 0., 0.}, v = 1.;
@@ -168,7 +164,7 @@ static PetscErrorCode FillBox(Markers *m, PetscInt dim, const PetscReal a[], Pet
           x[k] = ((PetscReal)i[k] + .5 - .5 * (PetscReal)n[k]) * d[k];
           depth = PetscMin(depth, .5 * a[k] - PetscAbsReal(x[k]));
         }
-        if (depth <= depthmax * SLACK) PetscCall(MarkersAdd(m, x[0], x[1], x[2], v));
+        if (depth <= depthmax * SLACK) PetscCall(RigidMarkersAdd(m, x[0], x[1], x[2], v));
       }
     }
   }
@@ -201,7 +197,7 @@ static PetscReal EllipseArc(PetscReal p, PetscReal q, PetscReal span, PetscInt n
 }
 
 /* Ring of an ellipsoid: ellipse of semi-axes p, q in the plane of axes u, v at height z along axis w. */
-static PetscErrorCode EllipseRing(Markers *m, PetscReal dp, const PetscInt axis[3], PetscReal p, PetscReal q, PetscReal z,
+static PetscErrorCode EllipseRing(RigidMarkers *m, PetscReal dp, const PetscInt axis[3], PetscReal p, PetscReal q, PetscReal z,
                                   PetscInt parity, PetscReal volume)
 {
   const PetscInt n = RoundToOne(EllipseArc(p, q, 2. * PETSC_PI, 1, NULL) / dp);
@@ -216,7 +212,7 @@ static PetscErrorCode EllipseRing(Markers *m, PetscReal dp, const PetscInt axis[
     x[axis[0]] = n == 1 ? 0. : p * PetscCosReal(t);
     x[axis[1]] = n == 1 ? 0. : q * PetscSinReal(t);
     x[axis[2]] = z;
-    PetscCall(MarkersAdd(m, x[0], x[1], x[2], volume / (PetscReal)n));
+    PetscCall(RigidMarkersAdd(m, x[0], x[1], x[2], volume / (PetscReal)n));
   }
   PetscCall(PetscFree(theta));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,7 +234,7 @@ static PetscInt EllipsoidAxis(const PetscReal c[3])
 }
 
 /* Layer of an ellipsoid on the mean ellipsoid c, the volume between products of semi-axes vo and vi. */
-static PetscErrorCode EllipsoidLayer(Markers *m, PetscReal dp, const PetscReal c[3], PetscReal vo, PetscReal vi)
+static PetscErrorCode EllipsoidLayer(RigidMarkers *m, PetscReal dp, const PetscReal c[3], PetscReal vo, PetscReal vi)
 {
   const PetscInt w = EllipsoidAxis(c), axis[3] = {(w + 1) % 3, (w + 2) % 3, w};
   const PetscReal mean = .5 * (c[axis[0]] + c[axis[1]]);
@@ -261,7 +257,7 @@ static PetscErrorCode EllipsoidLayer(Markers *m, PetscReal dp, const PetscReal c
   The core of an ellipsoid, thinner than 2 dp: cell centres of an even grid share its volume. They keep 0.3 dp from the core's
   surface, less where each would stand for more than 1.5 cells.
 */
-static PetscErrorCode EllipsoidCore(Markers *m, PetscInt dim, PetscReal dp, const PetscReal a[3], PetscReal volume)
+static PetscErrorCode EllipsoidCore(RigidMarkers *m, PetscInt dim, PetscReal dp, const PetscReal a[3], PetscReal volume)
 {
   RigidBodySpec core;
   PetscInt n[3] = {1, 1, 1};
@@ -281,14 +277,14 @@ static PetscErrorCode EllipsoidCore(Markers *m, PetscInt dim, PetscReal dp, cons
       const PetscInt i[3] = {c % n[0], (c / n[0]) % n[1], c / (n[0] * n[1])};
       PetscReal x[3] = {0., 0., 0.};
       for (PetscInt k = 0; k < dim; k++) x[k] = a[k] * (2. * ((PetscReal)i[k] + .5) / (PetscReal)n[k] - 1.);
-      if (RigidShapeDistance(&core, x) <= -.1 * dp * (PetscReal)gap) PetscCall(MarkersAdd(m, x[0], x[1], x[2], 0.));
+      if (RigidShapeDistance(&core, x) <= -.1 * dp * (PetscReal)gap) PetscCall(RigidMarkersAdd(m, x[0], x[1], x[2], 0.));
     }
   }
   for (PetscInt i = first; i < m->n; i++) m->volume[i] = volume / (PetscReal)(m->n - first);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillEllipsoid(Markers *m, PetscInt dim, const PetscReal a[], PetscReal dp, PetscReal depthmax)
+static PetscErrorCode FillEllipsoid(RigidMarkers *m, PetscInt dim, const PetscReal a[], PetscReal dp, PetscReal depthmax)
 {
   const PetscInt xyz[3] = {0, 1, 2};
   const PetscReal unit = dim == 2 ? PETSC_PI : 4. / 3. * PETSC_PI;
@@ -341,7 +337,7 @@ static PetscErrorCode FillCheck(const RigidBodySpec *spec, PetscInt dim, PetscRe
 PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscReal dp, PetscReal depthmax, PetscInt *n,
                                 PetscReal **x, PetscReal **volume, PetscReal **depth)
 {
-  Markers m = {0, 0, NULL, NULL, NULL};
+  RigidMarkers m = {0, 0, NULL, NULL, NULL};
   RigidBodySpec flat = *spec;
   const PetscReal *a = flat.size;
 
@@ -371,6 +367,10 @@ PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscRe
     break;
   case RIGID_ELLIPSOID:
     PetscCall(FillEllipsoid(&m, dim, a, dp, depthmax));
+    break;
+  case RIGID_MESH:
+  case RIGID_COMPOSITE:
+    PetscCall(RigidPackMarkers(&m, &flat, dim, dp, depthmax));
     break;
   }
   PetscCall(PetscMalloc1(m.n, &m.depth));

@@ -40,11 +40,24 @@ extern PetscInt RigidShapeNumSizes(RigidShape shape, PetscInt dim);
 extern const char *RigidShapeName(RigidShape shape);
 extern PetscErrorCode RigidSpecCheck(MPI_Comm comm, PetscInt body, PetscInt dim, const RigidBodySpec *spec);
 
+/* rigidfill.c, rigidpack.c */
+typedef struct {
+  PetscInt n, nalloc;
+  PetscReal *x, *volume, *depth; /* n x 3, n, n; m, m^3 (m^2 in 2D), m */
+} RigidMarkers;
+extern PetscErrorCode RigidMarkersAdd(RigidMarkers *m, PetscReal x, PetscReal y, PetscReal z, PetscReal volume);
+extern PetscErrorCode RigidPackMarkers(RigidMarkers *m, const RigidBodySpec *spec, PetscInt dim, PetscReal dp,
+                                       PetscReal depthmax);
+
 /* rigidstep.c */
 extern void RigidBodyOmega(const RigidBody *b, const PetscReal q[4], PetscReal w[3]);
 extern void RigidBodySetOmega(RigidBody *b, const PetscReal w[3]);
-extern void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3]);
+extern void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3], PetscReal T[3]);
+extern PetscReal RigidBodyPotential(Rigid rigid, const RigidBody *b);
 extern void RigidBodyAcceleration(Rigid rigid, const RigidBody *b, PetscReal A[3], PetscReal alpha[3]);
+extern void RigidBodyKick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], PetscReal dt);
+extern void RigidBodyKickApplied(Rigid rigid, RigidBody *b, PetscReal dt);
+extern PetscErrorCode RigidBodyDrift(Rigid rigid, PetscInt i, PetscReal dt);
 extern PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt);
 
 #endif

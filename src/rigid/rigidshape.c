@@ -6,17 +6,17 @@
   hemisphere's, moved by Steiner's rule. The distance to an ellipsoid is found from the closest point x of its surface to y,
   x_i = a_i^2 y_i/(t + a_i^2) with t the largest root of sum (a_i y_i/(t + a_i^2))^2 = 1.
 */
-#include "rigidimpl.h"
+#include "rigidgeometry.h"
 
 const char *RigidShapeName(RigidShape shape)
 {
-  static const char *const names[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule"};
+  static const char *const names[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule", "mesh", "composite"};
   return names[shape];
 }
 
 PetscInt RigidShapeNumSizes(RigidShape shape, PetscInt dim)
 {
-  static const PetscInt n3[] = {1, 3, 2, 3, 2}, n2[] = {1, 2, 1, 2, 0};
+  static const PetscInt n3[] = {1, 3, 2, 3, 2, 0, 0}, n2[] = {1, 2, 1, 2, 0, 0, 0};
   return dim == 2 ? n2[shape] : n3[shape];
 }
 
@@ -34,6 +34,9 @@ PetscReal RigidShapeVolume(const RigidBodySpec *spec, PetscInt dim)
     return dim == 2 ? PETSC_PI * a[0] * a[1] : 4. / 3. * PETSC_PI * a[0] * a[1] * a[2];
   case RIGID_CAPSULE:
     return PETSC_PI * r * r * (a[1] + 4. / 3. * r);
+  case RIGID_MESH:
+  case RIGID_COMPOSITE:
+    return spec->geometry->volume;
   }
   return 0.;
 }
@@ -63,6 +66,10 @@ void RigidShapeMoments(const RigidBodySpec *spec, PetscInt dim, PetscReal J[3])
     m[2] = vc * l * l / 12. + vs * (r * r / 5. + l * l / 4. + 3. / 8. * l * r); /* cap centroid at l/2 + 3r/8 */
     break;
   }
+  case RIGID_MESH:
+  case RIGID_COMPOSITE:
+    for (int i = 0; i < 3; i++) J[i] = spec->geometry->J[i];
+    return;
   }
   if (dim == 2) m[2] = 0.;
   for (int i = 0; i < 3; i++) J[i] = m[(i + 1) % 3] + m[(i + 2) % 3];
@@ -79,6 +86,13 @@ PetscReal RigidShapeSmallest(const RigidBodySpec *spec, PetscInt dim)
     return dim == 2 ? 2. * a[0] : PetscMin(2. * a[0], a[1]);
   case RIGID_BOX:
     return dim == 2 ? PetscMin(a[0], a[1]) : PetscMin(PetscMin(a[0], a[1]), a[2]);
+  case RIGID_MESH:
+  case RIGID_COMPOSITE: {
+    const PetscReal *lo = spec->geometry->lo, *hi = spec->geometry->hi;
+    PetscReal least = PETSC_MAX_REAL;
+    for (PetscInt k = 0; k < dim; k++) least = PetscMin(least, hi[k] - lo[k]);
+    return least;
+  }
   case RIGID_ELLIPSOID:
     return 2. * (dim == 2 ? PetscMin(a[0], a[1]) : PetscMin(PetscMin(a[0], a[1]), a[2]));
   }
@@ -170,6 +184,9 @@ PetscReal RigidShapeDistance(const RigidBodySpec *spec, const PetscReal x[3])
     d[1] = x[1];
     d[2] = PetscMax(PetscAbsReal(x[2]) - .5 * a[1], 0.);
     return Vec3Norm(d) - r;
+  case RIGID_MESH:
+  case RIGID_COMPOSITE:
+    return RigidGeometryDistance(spec->geometry, x);
   }
   return 0.;
 }
@@ -231,9 +248,19 @@ static PetscErrorCode CheckLocks(MPI_Comm comm, PetscInt body, PetscInt dim, con
 PetscErrorCode RigidSpecCheck(MPI_Comm comm, PetscInt body, PetscInt dim, const RigidBodySpec *spec)
 {
   PetscFunctionBegin;
-  PetscCheck((int)spec->shape >= 0 && spec->shape <= RIGID_CAPSULE, comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "Rigid body %" PetscInt_FMT ": shape = %d; must be one of sphere, box, cylinder, ellipsoid, capsule", body,
-             (int)spec->shape);
+  PetscCheck((int)spec->shape >= 0 && spec->shape <= RIGID_COMPOSITE, comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT
+             ": shape = %d; must be one of sphere, box, cylinder, ellipsoid, capsule, mesh, composite",
+             body, (int)spec->shape);
+  if (spec->shape == RIGID_MESH || spec->shape == RIGID_COMPOSITE) {
+    PetscCheck(spec->geometry && spec->geometry->shape == spec->shape, comm, PETSC_ERR_ARG_INCOMP,
+               "Rigid body %" PetscInt_FMT ": shape = %s, but its geometry is %s; must be a %s", body,
+               RigidShapeName(spec->shape), spec->geometry ? RigidShapeName(spec->geometry->shape) : "missing",
+               RigidShapeName(spec->shape));
+    PetscCheck(spec->geometry->dim == dim, comm, PETSC_ERR_ARG_INCOMP,
+               "Rigid body %" PetscInt_FMT ": the geometry of a %s in %" PetscInt_FMT "D cannot be used in %" PetscInt_FMT "D",
+               body, RigidShapeName(spec->shape), spec->geometry->dim, dim);
+  }
   PetscCheck(dim == 3 || spec->shape != RIGID_CAPSULE, comm, PETSC_ERR_ARG_INCOMP,
              "Rigid body %" PetscInt_FMT ": shape = capsule; in 2D use cylinder (a disc), box or ellipsoid", body);
   PetscCheck((int)spec->motion >= 0 && spec->motion <= RIGID_FREE, comm, PETSC_ERR_ARG_OUTOFRANGE,

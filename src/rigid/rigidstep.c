@@ -15,7 +15,7 @@
   Locked directions are ideal constraints in the space frame: the free components of L obey dL_f/dt = T_f and
   w_f = (J_ff)^-1 L_f with J_ff the free block of R J R^T, so that no multiplier has to be solved for.
 */
-#include "rigidimpl.h"
+#include "rigidgeometry.h"
 
 #define RIGID_MAX_SUBSTEPS 100000
 
@@ -62,20 +62,41 @@ void RigidBodySetOmega(RigidBody *b, const PetscReal w[3])
   for (int k = 0; k < 3; k++) b->w[k] = w[k];
 }
 
-/* Gravity less the weight of the displaced fluid. */
-void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3])
+/* From the centre of mass to the centroid of the volume, space frame; not 0 for composites of several densities. */
+static void BuoyancyArm(const RigidBody *b, PetscReal r[3])
 {
-  const PetscReal m = b->spec.mass - rigid->rhofluid * b->volume;
-  for (int k = 0; k < 3; k++) F[k] = m * rigid->g[k];
+  static const PetscReal zero[3] = {0., 0., 0.};
+  QuatRotate(b->q, b->spec.geometry ? b->spec.geometry->centroid : zero, r);
+}
+
+/* Gravity less the weight of the displaced fluid, which acts in the centroid of the volume. */
+void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3], PetscReal T[3])
+{
+  const PetscReal lift = -rigid->rhofluid * b->volume;
+  PetscReal r[3], rxg[3];
+  BuoyancyArm(b, r);
+  Vec3Cross(r, rigid->g, rxg);
+  for (int k = 0; k < 3; k++) {
+    F[k] = (b->spec.mass + lift) * rigid->g[k];
+    T[k] = lift * rxg[k];
+  }
+}
+
+PetscReal RigidBodyPotential(Rigid rigid, const RigidBody *b)
+{
+  const PetscReal lift = -rigid->rhofluid * b->volume;
+  PetscReal r[3];
+  BuoyancyArm(b, r);
+  return -(b->spec.mass + lift) * Vec3Dot(rigid->g, b->X) - lift * Vec3Dot(rigid->g, r);
 }
 
 /* Eqs. 12, 14 for the last wrench: J alpha = T - w x J w in the space frame. */
 void RigidBodyAcceleration(Rigid rigid, const RigidBody *b, PetscReal A[3], PetscReal alpha[3])
 {
-  PetscReal w[3], Jw[3], gyro[3], weight[3], S[9], rhs[3];
+  PetscReal w[3], Jw[3], gyro[3], weight[3], tilt[3], S[9], rhs[3];
   for (int k = 0; k < 3; k++) A[k] = alpha[k] = 0.;
   if (b->spec.motion != RIGID_FREE) return;
-  RigidBodyWeight(rigid, b, weight);
+  RigidBodyWeight(rigid, b, weight, tilt);
   RigidBodyOmega(b, b->q, w);
   InertiaSpace(b->q, b->spec.inertia, S);
   Mat3Mult(S, w, Jw);
@@ -83,7 +104,7 @@ void RigidBodyAcceleration(Rigid rigid, const RigidBody *b, PetscReal A[3], Pets
   for (int k = 0; k < 3; k++) {
     const PetscReal F = rigid->advanced ? b->Fused[k] : b->F[k], T = rigid->advanced ? b->Tused[k] : b->T[k];
     A[k] = b->spec.lock[k] ? 0. : (F + weight[k]) / b->spec.mass;
-    rhs[k] = T - gyro[k];
+    rhs[k] = T + tilt[k] - gyro[k];
   }
   SolveUnlocked(b, b->q, rhs, alpha);
 }
@@ -153,7 +174,7 @@ static PetscErrorCode NumSubsteps(Rigid rigid, PetscInt i, PetscReal dt, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void Kick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], PetscReal dt)
+void RigidBodyKick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], PetscReal dt)
 {
   for (int k = 0; k < 3; k++) {
     if (!b->spec.lock[k]) b->V[k] += dt * F[k] / b->spec.mass;
@@ -161,16 +182,25 @@ static void Kick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], Petsc
   }
 }
 
-static PetscErrorCode AdvanceFree(Rigid rigid, PetscInt i, PetscReal dt)
+/* The applied wrench and the weight at the present orientation, over dt. */
+void RigidBodyKickApplied(Rigid rigid, RigidBody *b, PetscReal dt)
+{
+  PetscReal F[3], T[3];
+  RigidBodyWeight(rigid, b, F, T);
+  for (int k = 0; k < 3; k++) {
+    F[k] += b->F[k];
+    T[k] += b->T[k];
+  }
+  RigidBodyKick(b, F, T, dt);
+}
+
+/* Free flight. */
+PetscErrorCode RigidBodyDrift(Rigid rigid, PetscInt i, PetscReal dt)
 {
   RigidBody *b = &rigid->body[i];
-  PetscReal F[3];
   PetscInt nsub;
 
   PetscFunctionBegin;
-  RigidBodyWeight(rigid, b, F);
-  for (int k = 0; k < 3; k++) F[k] += b->F[k];
-  Kick(b, F, b->T, .5 * dt);
   for (int k = 0; k < 3; k++) b->X[k] += dt * b->V[k];
   PetscCall(NumSubsteps(rigid, i, dt, &nsub));
   for (PetscInt s = 0; s < nsub; s++) {
@@ -179,7 +209,17 @@ static PetscErrorCode AdvanceFree(Rigid rigid, PetscInt i, PetscReal dt)
     else
       RotateFree(b, dt / (PetscReal)nsub);
   }
-  Kick(b, F, b->T, .5 * dt);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AdvanceFree(Rigid rigid, PetscInt i, PetscReal dt)
+{
+  RigidBody *b = &rigid->body[i];
+
+  PetscFunctionBegin;
+  RigidBodyKickApplied(rigid, b, .5 * dt);
+  PetscCall(RigidBodyDrift(rigid, i, dt));
+  RigidBodyKickApplied(rigid, b, .5 * dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
