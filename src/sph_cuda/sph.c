@@ -48,6 +48,8 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   sph->par.zeta = 0.5;
   sph->par.epsilon = 0.01;
   sph->par.viscositylattice = PETSC_TRUE;
+  sph->par.alpha = 0.1;
+  sph->par.delta = 0.1;
   sph->par.cfl = 0.25;
   sph->par.dtfixed = PETSC_DECIDE;
   sph->par.reinit = SPH_REINIT_SHEPARD;
@@ -209,12 +211,14 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
 /*@
   SphComputeTimeStep - Stable step from the acoustic, force and viscous limits, or the fixed one.
 
-  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21.
+  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21. The artificial
+  viscosity counts as nu = alpha c_s h/(2 (dim + 2)): Monaghan, Rep. Prog. Phys. 68 (2005), Sect. 7.
   Errors: a fixed step above the limit at the first step; later it is a warning, once.
 @*/
 PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
 {
   const SphParams *p = &sph->par;
+  const PetscReal nu = p->viscosity == SPH_VISCOSITY_ARTIFICIAL ? p->alpha * p->cs * p->h / (2.0 * (PetscReal)(p->dim + 2)) : p->mu / p->rho0;
   PetscReal vmax, amax, limit;
   const char *which = "acoustic";
 
@@ -225,8 +229,8 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
     limit = p->cfl * PetscSqrtReal(p->h / amax);
     which = "force";
   }
-  if (p->mu > 0.0 && p->cfl * 0.5 * p->h * p->h * p->rho0 / p->mu < limit) {
-    limit = p->cfl * 0.5 * p->h * p->h * p->rho0 / p->mu;
+  if (nu > 0.0 && p->cfl * 0.5 * p->h * p->h / nu < limit) {
+    limit = p->cfl * 0.5 * p->h * p->h / nu;
     which = "viscous";
   }
   PetscCheck(PetscIsNormalReal(limit), sph->comm, PETSC_ERR_FP,
@@ -251,7 +255,7 @@ static PetscErrorCode EvaluateRates(Sph sph)
 }
 
 /*@
-  SphStepBegin - First midpoint stage: rates at t, state at t + dt/2. Set the boundary motion at t + dt/2 next.
+  SphStepBegin - First stage: rates at t, state at t + dt/2 (verlet: the state stays). Set the boundary motion at t + dt/2 next.
 @*/
 PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
 {
@@ -260,7 +264,7 @@ PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
   PetscCheck(dt > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the time step %g s must be > 0", (double)dt);
   PetscCall(EvaluateRates(sph));
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
-  PetscCall((*sph->ops->halfstep)(sph, dt));
+  if (sph->par.integrator != SPH_INTEGRATOR_VERLET) PetscCall((*sph->ops->halfstep)(sph, dt));
   PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
   sph->dt = dt;
   sph->insidestep = PETSC_TRUE;
@@ -268,7 +272,7 @@ PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
 }
 
 /*@
-  SphStepEnd - Second midpoint stage: rates and boundary forces at t + dt/2, fluid state at t + dt.
+  SphStepEnd - Second stage: rates and boundary forces at t + dt/2 (verlet: those at t stay), fluid state at t + dt.
 
   Errors: PETSC_ERR_FP naming field, marker, step and time when a value is not finite (every -sph_check_every steps).
 @*/
@@ -276,9 +280,12 @@ PetscErrorCode SphStepEnd(Sph sph)
 {
   PetscFunctionBegin;
   PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEnd() was called without SphStepBegin()");
-  PetscCall(EvaluateRates(sph));
+  if (sph->par.integrator != SPH_INTEGRATOR_VERLET) PetscCall(EvaluateRates(sph));
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
+  sph->verletspan = sph->verletstep % SPH_VERLET_EVERY ? sph->dt + sph->dtold : 0.0;
+  sph->verletstep++;
   PetscCall((*sph->ops->fullstep)(sph, sph->dt));
+  sph->dtold = sph->dt;
   PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
   sph->insidestep = PETSC_FALSE;
   sph->t += sph->dt;
@@ -287,6 +294,7 @@ PetscErrorCode SphStepEnd(Sph sph)
     PetscCall(PetscLogEventBegin(SPH_Reinit, 0, 0, 0, 0));
     PetscCall((*sph->ops->build)(sph));
     PetscCall((*sph->ops->reinit)(sph));
+    sph->verletstep = 0;
     PetscCall(PetscLogEventEnd(SPH_Reinit, 0, 0, 0, 0));
   }
   if (sph->step % sph->par.checkevery == 0) {

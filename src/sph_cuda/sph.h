@@ -29,10 +29,23 @@ typedef enum { SPH_WALL_BCE, SPH_WALL_ADAMI } SphWallType;
 /* Density re-initialisation, Eq. 9: never; the plain sum; the sum normalised by the kernel sum (Shepard). */
 typedef enum { SPH_REINIT_NONE, SPH_REINIT_SUM, SPH_REINIT_SHEPARD } SphReinitType;
 
+/*
+  Viscous term. EQ6: the paper, Eq. 6. MORRIS: the same with rho_a rho_b (Morris, Fox, Zhu 1997, Eq. 22). ARTIFICIAL: Monaghan (1992) with the factor
+  alpha, for nearly inviscid flows; the viscosity mu is not used then.
+*/
+typedef enum { SPH_VISCOSITY_EQ6, SPH_VISCOSITY_MORRIS, SPH_VISCOSITY_ARTIFICIAL } SphViscosityType;
+/* Density diffusion: Molteni and Colagrossi (2009), or without the hydrostatic part, Fourtakas et al. (2019). */
+typedef enum { SPH_DIFFUSION_NONE, SPH_DIFFUSION_MOLTENI, SPH_DIFFUSION_FOURTAKAS } SphDiffusionType;
+/* sphstep.h; rk2 and symplectic evaluate two right-hand sides per step, verlet one. */
+typedef enum { SPH_INTEGRATOR_RK2, SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC } SphIntegratorType;
+
 FROND_EXTERN const char *const SphKernelTypes[];
 FROND_EXTERN const char *const SphPrecisions[];
 FROND_EXTERN const char *const SphWallTypes[];
 FROND_EXTERN const char *const SphReinitTypes[];
+FROND_EXTERN const char *const SphViscosityTypes[];
+FROND_EXTERN const char *const SphDiffusionTypes[];
+FROND_EXTERN const char *const SphIntegratorTypes[];
 
 FROND_EXTERN PetscErrorCode SphCreate(MPI_Comm comm, Sph *sph);
 FROND_EXTERN PetscErrorCode SphSetOptionsPrefix(Sph sph, const char prefix[]);
@@ -52,6 +65,12 @@ FROND_EXTERN PetscErrorCode SphSetXSPH(Sph sph, PetscReal zeta);
 FROND_EXTERN PetscErrorCode SphSetDensityReinit(Sph sph, SphReinitType type, PetscInt every);
 FROND_EXTERN PetscErrorCode SphSetViscosityEpsilon(Sph sph, PetscReal epsilon);
 FROND_EXTERN PetscErrorCode SphSetViscosityLattice(Sph sph, PetscBool normalise);
+FROND_EXTERN PetscErrorCode SphSetViscosityType(Sph sph, SphViscosityType type);
+/* Factor alpha of the artificial viscosity (default 0.1); acts like nu = alpha c_s h/(2 (dim + 2)) (Monaghan 2005). */
+FROND_EXTERN PetscErrorCode SphSetArtificialViscosity(Sph sph, PetscReal alpha);
+/* Density diffusion and its factor delta (default 0.1). */
+FROND_EXTERN PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal delta);
+FROND_EXTERN PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator);
 FROND_EXTERN PetscErrorCode SphSetKernel(Sph sph, SphKernelType kernel);
 FROND_EXTERN PetscErrorCode SphSetPrecision(Sph sph, SphPrecision precision);
 FROND_EXTERN PetscErrorCode SphSetWall(Sph sph, SphWallType wall);

@@ -7,6 +7,8 @@
 #include "sph_cpu.h"
 #include <math.h>
 #include <omp.h>
+typedef double sphreal;
+#include "sphstep.h"
 
 /* Cells are 5 % larger than the support, so that they serve until a marker has moved half of that. */
 #define SPH_SKIN 0.05
@@ -32,7 +34,7 @@ static PetscErrorCode Destroy_CPU(Sph sph)
   for (int k = 0; k < 3; k++) PetscCall(PetscFree(cpu->xref[k]));
   PetscCall(PetscFree(cpu->cellstart));
   PetscCall(PetscFree(cpu->q));
-  PetscCall(PetscFree(cpu->tiles));
+  PetscCall(PetscFree(cpu->lists));
   PetscCall(PetscFree(sph->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -59,8 +61,8 @@ static double MaxMove2(Sph sph, const SphCpu *cpu)
 static void TakeOutLeft(Sph sph)
 {
   const SphParams *p = &sph->par;
-  const double     margin = 2.0 * p->h + p->dp;
-  PetscInt         left = 0;
+  const double margin = 2.0 * p->h + p->dp;
+  PetscInt left = 0;
 #pragma omp parallel for schedule(static) reduction(+ : left)
   for (PetscInt i = 0; i < sph->n; i++) {
     if (sph->group[i] != -1) continue;
@@ -78,26 +80,26 @@ static void TakeOutLeft(Sph sph)
   sph->left += left;
 }
 
-/* Room for the prepared quantities and for each thread's tile. */
+/* Room for the prepared quantities and for each thread's list. */
 static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
 {
-  const size_t   real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
+  const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
   const PetscInt ncell = (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2];
-  PetscInt       most = 0;
+  PetscInt most = 0;
 
   PetscFunctionBegin;
   for (PetscInt c = 0; c < ncell; c++) most = PetscMax(most, cpu->cellstart[2 * c + 2] - cpu->cellstart[2 * c]);
-  most = (most * (sph->par.dim == 3 ? 27 : 9) + 31) / 16 * 16;
-  if (most > cpu->tilecap) {
-    cpu->tilecap = most + most / 4;
-    cpu->tilecap -= cpu->tilecap % 16;
-    cpu->tilebytes = (size_t)cpu->tilecap * (SPH_NQ * real + sizeof(int)) + 64;
-    PetscCall(PetscFree(cpu->tiles));
-    PetscCall(PetscMalloc(cpu->tilebytes * (size_t)cpu->threads, &cpu->tiles));
+  most = (most * (sph->par.dim == 3 ? 27 : 9) + 47) / 16 * 16;
+  if (most > cpu->listcap) {
+    cpu->listcap = most + most / 64 * 16;
+    cpu->listbytes = ((size_t)cpu->listcap * (SPH_NQ_MAX * real + sizeof(int)) + 127) / 64 * 64;
+    PetscCall(PetscFree(cpu->lists));
+    PetscCall(PetscMalloc(cpu->listbytes * (size_t)cpu->threads, &cpu->lists));
   }
   if (!cpu->q) {
     cpu->stride = (sph->n + 31) / 16 * 16;
-    PetscCall(PetscMalloc((size_t)cpu->stride * SPH_NQ * real, &cpu->q));
+    cpu->nq = SPH_NQ_BASE + (SphCpuTwoVelocities(&sph->par) ? 3 : 0) + (sph->par.diffusion != SPH_DIFFUSION_NONE);
+    PetscCall(PetscMalloc((size_t)cpu->stride * (size_t)cpu->nq * real, &cpu->q));
     for (int k = 0; k < 3; k++) PetscCall(PetscCalloc1(sph->n, &cpu->xref[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,7 +107,7 @@ static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
 
 static PetscErrorCode Build_CPU(Sph sph)
 {
-  SphCpu      *cpu = (SphCpu *)sph->data;
+  SphCpu *cpu = (SphCpu *)sph->data;
   const double allowed = 0.5 * cpu->skin * 2.0 * sph->par.h * 0.5; /* half: the other half is for the motion within the step */
 
   PetscFunctionBegin;
@@ -121,67 +123,105 @@ static PetscErrorCode Build_CPU(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Sweep(Sph sph, SphSweep sweep)
+static void Prepare(Sph sph, int afteraux)
 {
-  PetscFunctionBegin;
-  if (sph->par.precision == SPH_PRECISION_SINGLE) PetscCall(SphCpuSweep_single(sph, sweep));
-  else PetscCall(SphCpuSweep_double(sph, sweep));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (sph->par.precision == SPH_PRECISION_SINGLE)
+    SphCpuPrepare_single(sph, afteraux);
+  else
+    SphCpuPrepare_double(sph, afteraux);
+}
+
+static void Sweep(Sph sph, SphSweep sweep)
+{
+  if (sph->par.precision == SPH_PRECISION_SINGLE)
+    SphCpuSweep_single(sph, sweep);
+  else
+    SphCpuSweep_double(sph, sweep);
 }
 
 static PetscErrorCode Rates_CPU(Sph sph)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Aux, 0, 0, 0, 0));
-  if (sph->par.zeta > 0.0 || sph->par.wall == SPH_WALL_ADAMI) PetscCall(Sweep(sph, SPH_SWEEP_AUX));
+  Prepare(sph, 0);
+  if (SphCpuTwoVelocities(&sph->par)) {
+    Sweep(sph, SPH_SWEEP_AUX);
+    Prepare(sph, 1);
+  }
   PetscCall(PetscLogEventEnd(SPH_Aux, 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(SPH_Rates, 0, 0, 0, 0));
-  PetscCall(Sweep(sph, SPH_SWEEP_RATES));
+  Sweep(sph, SPH_SWEEP_RATES);
   PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
   sph->evaluations += (PetscReal)(sph->n - sph->left);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* state := base + dt * rates, for fluid; boundaries keep their motion, and their density unless it is evolved. */
-static void Move(Sph sph, const SphState *base, PetscReal dt)
+typedef enum { STAGE_HALF, STAGE_RK2, STAGE_SYMPLECTIC, STAGE_VERLET } Stage;
+
+/* One stage of sphstep.h for every marker; boundaries keep their motion, and their density unless it is evolved. */
+SPH_INLINE void MoveStage(Sph sph, const Stage stage, double dt)
 {
   const SphParams *p = &sph->par;
-  const int        evolve = p->wall == SPH_WALL_BCE;
+  const int evolve = p->wall == SPH_WALL_BCE;
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < sph->n; i++) {
-    if (sph->group[i] == -1) {
-      for (int k = 0; k < p->dim; k++) {
-        sph->st.x[k][i] = base->x[k][i] + dt * (sph->st.v[k][i] + sph->rate.dv[k][i]);
-        sph->st.v[k][i] = base->v[k][i] + dt * (sph->rate.a[k][i] + p->f[k]);
-      }
-      sph->st.s[i] = base->s[i] + dt * sph->rate.ds[i];
-    } else if (evolve && sph->group[i] >= 0) sph->st.s[i] = base->s[i] + dt * sph->rate.ds[i];
+    const int fluid = sph->group[i] == -1;
+    SphStepMarker m;
+    if (!fluid && !(evolve && sph->group[i] >= 0)) continue;
+    for (int k = 0; k < 3; k++) {
+      m.x[k] = sph->st.x[k][i];
+      m.v[k] = sph->st.v[k][i];
+      m.xn[k] = sph->stn.x[k][i];
+      m.vn[k] = sph->stn.v[k][i];
+      m.acc[k] = k < p->dim ? sph->rate.a[k][i] + p->f[k] : 0.0;
+      m.dv[k] = sph->rate.dv[k][i];
+    }
+    m.s = sph->st.s[i];
+    m.sn = sph->stn.s[i];
+    m.ds = sph->rate.ds[i];
+    if (stage == STAGE_HALF)
+      sph_step_half(&m, fluid, dt);
+    else if (stage == STAGE_RK2)
+      sph_step_full_rk2(&m, fluid, dt);
+    else if (stage == STAGE_SYMPLECTIC)
+      sph_step_full_symplectic(&m, fluid, dt);
+    else
+      sph_step_full_verlet(&m, fluid, dt, sph->verletspan);
+    sph->st.s[i] = m.s;
+    sph->stn.s[i] = m.sn;
+    for (int k = 0; k < 3 && fluid; k++) {
+      sph->st.x[k][i] = m.x[k];
+      sph->st.v[k][i] = m.v[k];
+      sph->stn.x[k][i] = m.xn[k];
+      sph->stn.v[k][i] = m.vn[k];
+    }
   }
 }
 
 static PetscErrorCode HalfStep_CPU(Sph sph, PetscReal dt)
 {
   PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) {
-    PetscCall(PetscArraycpy(sph->stn.x[k], sph->st.x[k], sph->n));
-    PetscCall(PetscArraycpy(sph->stn.v[k], sph->st.v[k], sph->n));
-  }
-  PetscCall(PetscArraycpy(sph->stn.s, sph->st.s, sph->n));
-  Move(sph, &sph->stn, 0.5 * dt);
+  MoveStage(sph, STAGE_HALF, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode FullStep_CPU(Sph sph, PetscReal dt)
 {
   PetscFunctionBegin;
-  Move(sph, &sph->stn, dt);
+  if (sph->par.integrator == SPH_INTEGRATOR_RK2)
+    MoveStage(sph, STAGE_RK2, dt);
+  else if (sph->par.integrator == SPH_INTEGRATOR_SYMPLECTIC)
+    MoveStage(sph, STAGE_SYMPLECTIC, dt);
+  else
+    MoveStage(sph, STAGE_VERLET, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Reinit_CPU(Sph sph)
 {
   PetscFunctionBegin;
-  PetscCall(Sweep(sph, SPH_SWEEP_SUM));
+  Prepare(sph, 0);
+  Sweep(sph, SPH_SWEEP_SUM);
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < sph->n; i++)
     if (sph->group[i] == -1) sph->st.s[i] = sph->rate.ds[i];
@@ -195,7 +235,7 @@ static PetscErrorCode Motion_CPU(Sph sph, PetscInt group, const PetscReal *x, co
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static)
   for (PetscInt id = first; id < last; id++) {
-    const int      i = sph->slot[id];
+    const int i = sph->slot[id];
     const PetscInt o = 3 * (id - first);
     for (int k = 0; k < sph->par.dim; k++) {
       sph->st.x[k][i] = x[o + k];
@@ -252,4 +292,5 @@ static PetscErrorCode Push_CPU(Sph sph)
   return PETSC_SUCCESS;
 }
 
-const SphOps SphOps_CPU = {SetUp_CPU, Build_CPU, Rates_CPU, HalfStep_CPU, FullStep_CPU, Reinit_CPU, Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU, Push_CPU, Destroy_CPU};
+const SphOps SphOps_CPU = {SetUp_CPU,  Build_CPU, Rates_CPU,  HalfStep_CPU, FullStep_CPU, Reinit_CPU,
+                           Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU,     Push_CPU,     Destroy_CPU};

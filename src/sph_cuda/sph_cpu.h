@@ -4,30 +4,36 @@
 
 #include "sphimpl.h"
 
-/* Quantities of each marker that pair sums read, in the working precision; all n long, in sorted order. */
+/* Quantities of each marker that pair sums read, in the working precision; each n long, in sorted order. */
 enum {
-  SPH_Q_X,   /* 3: position relative to the centre of the marker's cell, m */
-  SPH_Q_U = 3, /* 3: velocity that moves densities, Eq. 10 (boundary: its own), m/s */
-  SPH_Q_V = 6, /* 3: velocity in the viscous term (boundary: extrapolated when wall = adami), m/s */
-  SPH_Q_M = 9, /* mass, kg */
-  SPH_Q_RHO,   /* density, kg/m^3 */
+  SPH_Q_X,     /* 3: position relative to the centre of the marker's cell, m */
+  SPH_Q_V = 3, /* 3: velocity in the viscous term (boundary: extrapolated when wall = adami), m/s */
+  SPH_Q_M = 6, /* mass, kg */
+  SPH_Q_S,     /* rho/rho0 - 1 */
   SPH_Q_VOL,   /* m/rho, m^3 */
-  SPH_Q_P,     /* p/rho^2; in the auxiliary pass p itself, Pa */
-  SPH_NQ
+  SPH_Q_P,     /* p/rho^2, Pa m^6/kg^2 */
+  SPH_NQ_BASE,
+  SPH_Q_U = SPH_NQ_BASE, /* 3: velocity that moves densities, Eq. 10 (boundary: its own), m/s; only where it differs from V */
+  SPH_NQ_MAX = SPH_NQ_BASE + 4
 };
+/* Last comes m/rho of fluid and 0 of boundary markers, the weight of density diffusion, when there is any. */
+#define SPH_Q_DIF(uv) (SPH_NQ_BASE + ((uv) ? 3 : 0))
+
+/* Markers that share one list of neighbours: compact by the order within cells. */
+#define SPH_GROUP 8
 
 typedef struct {
-  SphGrid  grid;
-  int     *cellstart; /* 2 ncell + 2 offsets: fluid and boundary markers of each cell */
+  SphGrid grid;
+  int *cellstart; /* 2 ncell + 2 offsets: fluid and boundary markers of each cell */
   PetscInt cellcap;
-  double  *xref[3];   /* positions at the last build, m */
-  double   skin;      /* relative enlargement of the cells */
-  PetscInt tilecap;   /* most candidates that any cell can have */
+  double *xref[3];  /* positions at the last build, m */
+  double skin;      /* relative enlargement of the cells */
+  PetscInt listcap; /* most neighbours that a group can have */
   PetscInt threads;
-  void    *q;         /* SPH_NQ x stride values in the working precision */
-  PetscInt stride;
-  void    *tiles;     /* per thread: tilecap x (SPH_NQ values + one index) */
-  size_t   tilebytes;
+  void *q; /* nq x stride values in the working precision */
+  PetscInt nq, stride;
+  void *lists; /* per thread: SPH_NQ_MAX x listcap values, listcap indices */
+  size_t listbytes;
   PetscBool built;
 } SphCpu;
 
@@ -38,7 +44,16 @@ typedef enum {
   SPH_SWEEP_SUM    /* Eq. 9 and its normalisation */
 } SphSweep;
 
-extern PetscErrorCode SphCpuSweep_single(Sph sph, SphSweep sweep);
-extern PetscErrorCode SphCpuSweep_double(Sph sph, SphSweep sweep);
+/* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
+static inline int SphCpuTwoVelocities(const SphParams *p)
+{
+  return p->zeta > 0.0 || p->wall == SPH_WALL_ADAMI;
+}
+
+/* Fill the prepared quantities from the state; after an auxiliary sweep only what that changed. */
+extern void SphCpuPrepare_single(Sph sph, int afteraux);
+extern void SphCpuPrepare_double(Sph sph, int afteraux);
+extern void SphCpuSweep_single(Sph sph, SphSweep sweep);
+extern void SphCpuSweep_double(Sph sph, SphSweep sweep);
 
 #endif

@@ -1,17 +1,20 @@
 /*
   sph_cpupairs.c - pair sums on the CPU; compiled once with SPH_PAIRS_single and once with SPH_PAIRS_double.
 
-  For each cell the candidates of its 27 neighbour cells are copied once into a tile of contiguous arrays, fluid first, with
-  positions relative to the centre of the cell; periodic images become plain offsets. Each marker of the cell then selects
-  its neighbours from the tile (sphsimd.h) and sums over them in SIMD. A marker's sum is made by one thread in a fixed order: results do not
-  depend on the number of threads.
+  Markers are sorted by cell and, within a cell, along a Hilbert curve, so that SPH_GROUP consecutive ones lie close together. For
+  each such group the markers within 2h of its bounding box are copied from the 27 neighbour cells into a short list of contiguous
+  arrays (sphsimd.h), positions relative to the centre of the group's cell, periodic images as plain offsets. Each marker of the
+  group then sums over the whole list in SIMD: about half of it lies inside its own support, the kernel is zero for the rest. A
+  marker's sum is made by one thread in a fixed order: results do not depend on the number of threads.
 */
 #if defined(SPH_PAIRS_single)
 typedef float sphreal;
-  #define SPH_SWEEP_NAME SphCpuSweep_single
+  #define SPH_NAME(name) name##_single
+  #define SPH_SQRT sqrtf
 #else
 typedef double sphreal;
-  #define SPH_SWEEP_NAME SphCpuSweep_double
+  #define SPH_NAME(name) name##_double
+  #define SPH_SQRT sqrt
 #endif
 
 #include <math.h>
@@ -20,124 +23,170 @@ typedef double sphreal;
 #include "sphsimd.h"
 #include <omp.h>
 
-#if defined(SPH_PAIRS_single)
-  #define SPH_SQRT sqrtf
-  #if defined(SPH_HAVE_FILTER_FLOAT)
-    #define SphFilter sph_filter_float
-  #else
-SPH_FILTER_SCALAR(SphFilter, float)
-  #endif
-#else
-  #define SPH_SQRT sqrt
-SPH_FILTER_SCALAR(SphFilter, double)
-#endif
-
-#define SPH_TINY ((sphreal)1e-12)
-
 typedef struct {
-  sphreal *q[SPH_NQ];
-  int     *idx;
-  int      nfluid, n;
-} Tile;
+  sphreal *q[SPH_NQ_MAX];
+  int *scratch;
+  int n; /* a multiple of 16 */
+} List;
 
-/* Fill the prepared arrays from the state; p is what the sweep wants in SPH_Q_P. */
-static void Prepare(Sph sph, SphCpu *cpu, SphSweep sweep)
-{
-  const SphGrid   *g = &cpu->grid;
-  const SphParams *par = &sph->par;
-  sphreal         *base = (sphreal *)cpu->q;
-  sphreal         *q[SPH_NQ];
-  const int        ncell = g->n[0] * g->n[1] * g->n[2];
+/* What a sweep needs everywhere. */
+typedef struct {
+  SphPairConst c;
+  Sph sph;
+  const SphCpu *cpu;
+  sphreal *q[SPH_NQ_MAX];
+} Sweep;
 
-  for (int k = 0; k < SPH_NQ; k++) q[k] = base + (size_t)k * (size_t)cpu->stride;
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < ncell; c++) {
-    const int cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
-    for (int i = cpu->cellstart[2 * c]; i < cpu->cellstart[2 * c + 2]; i++) {
-      const PetscBool boundary = sph->group[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
-      const double    rho = par->rho0 * (1.0 + sph->st.s[i]);
-      const double    p = sph_eos(sph->st.s[i], par->B, par->gamma) + par->pb;
-      for (int k = 0; k < 3; k++) {
-        const double v = sph->st.v[k][i], w = sweep == SPH_SWEEP_AUX ? v : v + sph->rate.dv[k][i];
-        q[SPH_Q_X + k][i] = k < par->dim ? (sphreal)sph_cell_offset(g, k, cc[k], sph->st.x[k][i]) : (sphreal)0;
-        q[SPH_Q_U + k][i] = (sphreal)(boundary ? v : w);
-        q[SPH_Q_V + k][i] = (sphreal)(boundary ? w : v);
-      }
-      q[SPH_Q_M][i] = (sphreal)sph->m[i];
-      q[SPH_Q_RHO][i] = (sphreal)rho;
-      q[SPH_Q_VOL][i] = (sphreal)(sph->m[i] / rho);
-      q[SPH_Q_P][i] = (sphreal)(sweep == SPH_SWEEP_RATES ? p / (rho * rho) : p);
-    }
-  }
-}
+typedef void (*Kernel)(const Sweep *w, const List *l, int i);
 
-static inline void TileAppend(Tile *t, const sphreal *base, PetscInt stride, int j0, int j1, const sphreal off[3])
-{
-  const int n = j1 - j0, at = t->n;
-  for (int k = 0; k < 3; k++) {
-    const sphreal *restrict src = base + (size_t)k * (size_t)stride + j0;
-    sphreal *restrict dst = t->q[k] + at;
-    for (int j = 0; j < n; j++) dst[j] = src[j] + off[k];
-  }
-  for (int k = 3; k < SPH_NQ; k++) {
-    const sphreal *restrict src = base + (size_t)k * (size_t)stride + j0;
-    sphreal *restrict dst = t->q[k] + at;
-    for (int j = 0; j < n; j++) dst[j] = src[j];
-  }
-  t->n = at + n;
-}
-
-/* Candidates of cell (cx,cy,cz): pass 0 fluid, pass 1 boundary markers. */
-static void TileGather(const SphCpu *cpu, int cx, int cy, int cz, Tile *t)
+/* Fill the quantities of markers [i0,i1) of one cell, all fluid or all boundary. */
+SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, const int cc[3], int i0, int i1, int boundary,
+                             int afteraux)
 {
   const SphGrid *g = &cpu->grid;
-  t->n = 0;
-  for (int pass = 0; pass < 2; pass++) {
-    for (int o = 0; o < 27; o++) {
-      const int ox = o % 3 - 1, oy = o / 3 % 3 - 1, oz = o / 9 - 1;
-      const int nx = sph_cell_neighbour(g, 0, cx, ox), ny = sph_cell_neighbour(g, 1, cy, oy), nz = sph_cell_neighbour(g, 2, cz, oz);
-      if (nx < 0 || ny < 0 || nz < 0) continue;
-      const int     d = 2 * sph_cell_index(g, nx, ny, nz) + pass;
-      const sphreal off[3] = {(sphreal)(ox * g->edge[0]), (sphreal)(oy * g->edge[1]), (sphreal)(oz * g->edge[2])};
-      if (cpu->cellstart[d] < cpu->cellstart[d + 1]) TileAppend(t, (const sphreal *)cpu->q, cpu->stride, cpu->cellstart[d], cpu->cellstart[d + 1], off);
+  const SphParams *par = &sph->par;
+  const int uv = SphCpuTwoVelocities(par);
+
+  for (int k = 0; k < 3; k++) {
+    const double *restrict x = sph->st.x[k], *restrict v = sph->st.v[k], *restrict dv = sph->rate.dv[k];
+    if (!afteraux) {
+      if (k >= par->dim)
+        for (int i = i0; i < i1; i++) q[SPH_Q_X + k][i] = (sphreal)0;
+      else
+        for (int i = i0; i < i1; i++) q[SPH_Q_X + k][i] = (sphreal)sph_cell_offset(g, k, cc[k], x[i]);
+      for (int i = i0; i < i1; i++) q[SPH_Q_V + k][i] = (sphreal)v[i];
+      if (uv)
+        for (int i = i0; i < i1; i++) q[SPH_Q_U + k][i] = (sphreal)v[i];
+    } else {
+      sphreal *restrict moved = q[(boundary ? SPH_Q_V : SPH_Q_U) + k];
+      for (int i = i0; i < i1; i++) moved[i] = (sphreal)(v[i] + dv[i]);
     }
-    if (!pass) t->nfluid = t->n;
+  }
+  if (afteraux && !boundary) return;
+  for (int i = i0; i < i1; i++) {
+    const double s = sph->st.s[i], rho = par->rho0 * (1.0 + s), p = sph_eos(s, par->B, par->gamma) + par->pb;
+    q[SPH_Q_M][i] = (sphreal)sph->m[i];
+    q[SPH_Q_S][i] = (sphreal)s;
+    q[SPH_Q_VOL][i] = (sphreal)(sph->m[i] / rho);
+    q[SPH_Q_P][i] = (sphreal)(p / (rho * rho));
+  }
+  if (par->diffusion != SPH_DIFFUSION_NONE)
+    for (int i = i0; i < i1; i++) q[SPH_Q_DIF(uv)][i] = boundary ? (sphreal)0 : q[SPH_Q_VOL][i];
+}
+
+static void Pointers(const SphCpu *cpu, sphreal *q[SPH_NQ_MAX])
+{
+  for (int k = 0; k < SPH_NQ_MAX; k++) q[k] = (sphreal *)cpu->q + (size_t)PetscMin(k, cpu->nq - 1) * (size_t)cpu->stride;
+}
+
+void SPH_NAME(SphCpuPrepare)(Sph sph, int afteraux)
+{
+  const SphCpu *cpu = (const SphCpu *)sph->data;
+  const SphGrid *g = &cpu->grid;
+  const int ncell = g->n[0] * g->n[1] * g->n[2];
+  sphreal *q[SPH_NQ_MAX];
+
+  Pointers(cpu, q);
+#pragma omp parallel for schedule(static) num_threads((int)cpu->threads)
+  for (int c = 0; c < ncell; c++) {
+    const int *s = cpu->cellstart + 2 * c, cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
+    if (s[0] < s[1]) PrepareRange(sph, cpu, q, cc, s[0], s[1], 0, afteraux);
+    if (s[1] < s[2]) PrepareRange(sph, cpu, q, cc, s[1], s[2], 1, afteraux);
   }
 }
 
-/* Shepard-type sums that the auxiliary sweep gives: XSPH for fluid, Adami et al. (2012), Eqs. 22-27, for boundary markers. */
-SPH_INLINE void AuxFluid(const SphPairConst *c, const int kernel, const Tile *t, int m, Sph sph, int i, const sphreal *const xi, const sphreal *const vi, sphreal rhoi)
+/* Eqs. 4-6 for marker i over its list. uv: two velocities; visc: SphViscosityType; diff: with density diffusion. */
+SPH_INLINE void Rates(const int kernel, const int visc, const int uv, const int diff, const Sweep *w, const List *l, int i)
 {
+  const SphPairConst c = w->c;
+  sphreal *const *l_q = l->q;
+  const sphreal *restrict X = l_q[0], *restrict Y = l_q[1], *restrict Z = l_q[2], *restrict VX = l_q[SPH_Q_V],
+                          *restrict VY = l_q[SPH_Q_V + 1], *restrict VZ = l_q[SPH_Q_V + 2];
+  const sphreal *restrict M = l_q[SPH_Q_M], *restrict S = l_q[SPH_Q_S], *restrict VOL = l_q[SPH_Q_VOL],
+                          *restrict P = l_q[SPH_Q_P];
+  const sphreal *restrict UX = l_q[SPH_Q_U], *restrict UY = l_q[SPH_Q_U + 1], *restrict UZ = l_q[SPH_Q_U + 2],
+                          *restrict D = l_q[SPH_Q_DIF(uv)];
+  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
+                vz = w->q[SPH_Q_V + 2][i];
+  const sphreal si = w->q[SPH_Q_S][i], Pi = w->q[SPH_Q_P][i], rho = c.rho0 + c.rho0 * si;
+  const sphreal ux = uv ? w->q[SPH_Q_U][i] : vx, uy = uv ? w->q[SPH_Q_U + 1][i] : vy, uz = uv ? w->q[SPH_Q_U + 2][i] : vz;
+  sphreal ax = 0, ay = 0, az = 0, ds = 0, dd = 0;
+#pragma omp simd reduction(+ : ax, ay, az, ds, dd)
+  for (int j = 0; j < l->n; j++) {
+    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j];
+    const sphreal r2 = dx * dx + dy * dy + dz * dz;
+    const sphreal F = c.fnorm * sph_f(kernel, SPH_SQRT(r2) * c.hinv);
+    const sphreal ex = vx - VX[j], ey = vy - VY[j], ez = vz - VZ[j], rhoj = c.rho0 + c.rho0 * S[j];
+    const sphreal evx = ex * dx + ey * dy + ez * dz;
+    const sphreal eux = uv ? (ux - UX[j]) * dx + (uy - UY[j]) * dy + (uz - UZ[j]) * dz : evx;
+    const sphreal fp = sph_pressure(M[j], Pi, P[j], F);
+    ds += sph_continuity(VOL[j], eux, F);
+    if (diff) dd += sph_diffusion(&c, D[j], si, S[j], c.g[0] * dx + c.g[1] * dy + c.g[2] * dz, F);
+    if (visc == SPH_VISCOSITY_ARTIFICIAL) {
+      const sphreal f = fp + sph_viscosity_artificial(&c, M[j], rho, rhoj, evx, r2, F);
+      ax += f * dx;
+      ay += f * dy;
+      az += f * dz;
+    } else {
+      const sphreal fv = visc == SPH_VISCOSITY_MORRIS ? sph_viscosity_morris(&c, M[j], rho, rhoj, r2, F)
+                                                      : sph_viscosity(&c, M[j], rho, rhoj, r2, F);
+      ax += fp * dx + fv * ex;
+      ay += fp * dy + fv * ey;
+      az += fp * dz + fv * ez;
+    }
+  }
+  w->sph->rate.a[0][i] = (double)ax;
+  w->sph->rate.a[1][i] = (double)ay;
+  w->sph->rate.a[2][i] = (double)az;
+  w->sph->rate.ds[i] = (1.0 + w->sph->st.s[i]) * (double)ds;
+  if (diff && w->sph->group[i] == -1) w->sph->rate.ds[i] += (double)dd;
+}
+
+/* XSPH velocity of a fluid marker, Eq. 11. */
+SPH_INLINE void AuxFluid(const int kernel, const Sweep *w, const List *l, int i)
+{
+  const SphPairConst c = w->c;
+  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VX = l->q[SPH_Q_V],
+                          *restrict VY = l->q[SPH_Q_V + 1], *restrict VZ = l->q[SPH_Q_V + 2];
+  const sphreal *restrict M = l->q[SPH_Q_M], *restrict S = l->q[SPH_Q_S];
+  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
+                vz = w->q[SPH_Q_V + 2][i];
+  const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i];
   sphreal sx = 0, sy = 0, sz = 0;
 #pragma omp simd reduction(+ : sx, sy, sz)
-  for (int k = 0; k < m; k++) {
-    const int     j = t->idx[k];
-    const sphreal dx = xi[0] - t->q[SPH_Q_X][j], dy = xi[1] - t->q[SPH_Q_X + 1][j], dz = xi[2] - t->q[SPH_Q_X + 2][j];
-    const sphreal q = SPH_SQRT(dx * dx + dy * dy + dz * dz) * c->hinv;
-    const sphreal w = sph_xsph(t->q[SPH_Q_M][j], rhoi, t->q[SPH_Q_RHO][j], c->wnorm * sph_w(kernel, q));
-    sx += w * (t->q[SPH_Q_V][j] - vi[0]);
-    sy += w * (t->q[SPH_Q_V + 1][j] - vi[1]);
-    sz += w * (t->q[SPH_Q_V + 2][j] - vi[2]);
+  for (int j = 0; j < l->n; j++) {
+    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j];
+    const sphreal f =
+        sph_xsph(M[j], rho, c.rho0 + c.rho0 * S[j], c.wnorm * sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv));
+    sx += f * (VX[j] - vx);
+    sy += f * (VY[j] - vy);
+    sz += f * (VZ[j] - vz);
   }
-  sph->rate.dv[0][i] = (double)(c->zeta * sx);
-  sph->rate.dv[1][i] = (double)(c->zeta * sy);
-  sph->rate.dv[2][i] = (double)(c->zeta * sz);
+  w->sph->rate.dv[0][i] = (double)(c.zeta * sx);
+  w->sph->rate.dv[1][i] = (double)(c.zeta * sy);
+  w->sph->rate.dv[2][i] = (double)(c.zeta * sz);
 }
 
-SPH_INLINE void AuxBoundary(const SphPairConst *c, const int kernel, const Tile *t, int m, Sph sph, int i, const sphreal *const xi)
+/* Pressure (as density) and velocity of a boundary marker: Adami, Hu, Adams, J. Comput. Phys. 231 (2012), Eqs. 22-27. */
+SPH_INLINE void AuxBoundary(const int kernel, const Sweep *w, const List *l, int i)
 {
+  const SphPairConst c = w->c;
+  Sph sph = w->sph;
   const SphParams *par = &sph->par;
-  sphreal          sw = 0, sp = 0, vx = 0, vy = 0, vz = 0, rx = 0, ry = 0, rz = 0;
+  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VX = l->q[SPH_Q_V],
+                          *restrict VY = l->q[SPH_Q_V + 1], *restrict VZ = l->q[SPH_Q_V + 2];
+  const sphreal *restrict S = l->q[SPH_Q_S], *restrict P = l->q[SPH_Q_P];
+  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i];
+  sphreal sw = 0, sp = 0, vx = 0, vy = 0, vz = 0, rx = 0, ry = 0, rz = 0;
 #pragma omp simd reduction(+ : sw, sp, vx, vy, vz, rx, ry, rz)
-  for (int k = 0; k < m; k++) {
-    const int     j = t->idx[k];
-    const sphreal dx = xi[0] - t->q[SPH_Q_X][j], dy = xi[1] - t->q[SPH_Q_X + 1][j], dz = xi[2] - t->q[SPH_Q_X + 2][j];
-    const sphreal w = sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c->hinv), wr = w * t->q[SPH_Q_RHO][j];
-    sw += w;
-    sp += w * t->q[SPH_Q_P][j];
-    vx += w * t->q[SPH_Q_V][j];
-    vy += w * t->q[SPH_Q_V + 1][j];
-    vz += w * t->q[SPH_Q_V + 2][j];
+  for (int j = 0; j < l->n; j++) {
+    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], rho = c.rho0 + c.rho0 * S[j];
+    const sphreal W = sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv), wr = W * rho;
+    sw += W;
+    sp += wr * rho * P[j];
+    vx += W * VX[j];
+    vy += W * VY[j];
+    vz += W * VZ[j];
     rx += wr * dx;
     ry += wr * dy;
     rz += wr * dz;
@@ -148,119 +197,154 @@ SPH_INLINE void AuxBoundary(const SphPairConst *c, const int kernel, const Tile 
     return;
   }
   const double inv = 1.0 / (double)sw, v[3] = {(double)vx * inv, (double)vy * inv, (double)vz * inv};
-  double       p = (double)sp * inv;
-  p += ((par->f[0] - sph->ab[0][i]) * (double)rx + (par->f[1] - sph->ab[1][i]) * (double)ry + (par->f[2] - sph->ab[2][i]) * (double)rz) * inv;
+  double p = (double)sp * inv;
+  p += ((par->f[0] - sph->ab[0][i]) * (double)rx + (par->f[1] - sph->ab[1][i]) * (double)ry +
+        (par->f[2] - sph->ab[2][i]) * (double)rz) *
+       inv;
   for (int k = 0; k < 3; k++) sph->rate.dv[k][i] = sph->wallratio[i] * (sph->st.v[k][i] - v[k]);
   sph->st.s[i] = sph_eos_inverse(PetscMax(p - par->pb, -0.9 * par->B), par->B, par->gamma);
 }
 
-/* Eqs. 4-6 for marker i over its m neighbours. */
-SPH_INLINE void Rates(const SphPairConst *c, const int kernel, const Tile *t, int m, Sph sph, int i, const sphreal *const own)
-{
-  const sphreal xi = own[0], yi = own[1], zi = own[2], ux = own[SPH_Q_U], uy = own[SPH_Q_U + 1], uz = own[SPH_Q_U + 2], vx = own[SPH_Q_V], vy = own[SPH_Q_V + 1], vz = own[SPH_Q_V + 2];
-  const sphreal rho = own[SPH_Q_RHO], P = own[SPH_Q_P];
-  sphreal       ax = 0, ay = 0, az = 0, ds = 0;
-#pragma omp simd reduction(+ : ax, ay, az, ds)
-  for (int k = 0; k < m; k++) {
-    const int     j = t->idx[k];
-    const sphreal dx = xi - t->q[SPH_Q_X][j], dy = yi - t->q[SPH_Q_X + 1][j], dz = zi - t->q[SPH_Q_X + 2][j];
-    const sphreal r2 = dx * dx + dy * dy + dz * dz;
-    const sphreal F = c->fnorm * sph_f(kernel, SPH_SQRT(r2) * c->hinv);
-    const sphreal mb = t->q[SPH_Q_M][j];
-    const sphreal ex = ux - t->q[SPH_Q_U][j], ey = uy - t->q[SPH_Q_U + 1][j], ez = uz - t->q[SPH_Q_U + 2][j];
-    const sphreal fp = sph_pressure(mb, P, t->q[SPH_Q_P][j], F);
-    const sphreal fv = sph_viscosity(c, mb, rho, t->q[SPH_Q_RHO][j], r2, F);
-    ds += sph_continuity(t->q[SPH_Q_VOL][j], ex * dx + ey * dy + ez * dz, F);
-    ax += fp * dx + fv * (vx - t->q[SPH_Q_V][j]);
-    ay += fp * dy + fv * (vy - t->q[SPH_Q_V + 1][j]);
-    az += fp * dz + fv * (vz - t->q[SPH_Q_V + 2][j]);
-  }
-  sph->rate.a[0][i] = (double)ax;
-  sph->rate.a[1][i] = (double)ay;
-  sph->rate.a[2][i] = (double)az;
-  sph->rate.ds[i] = (1.0 + sph->st.s[i]) * (double)ds;
-}
-
 /* Eq. 9: sum of m_b W into ds; normalised by the sum of V_b W when Shepard is asked. */
-SPH_INLINE void Sum(const SphPairConst *c, const int kernel, const Tile *t, int m, Sph sph, int i, const sphreal *const xi)
+SPH_INLINE void Sum(const int kernel, const Sweep *w, const List *l, int i)
 {
+  const SphPairConst c = w->c;
+  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict S = l->q[SPH_Q_S],
+                          *restrict VOL = l->q[SPH_Q_VOL];
+  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i];
   sphreal sm = 0, sv = 0;
 #pragma omp simd reduction(+ : sm, sv)
-  for (int k = 0; k < m; k++) {
-    const int     j = t->idx[k];
-    const sphreal dx = xi[0] - t->q[SPH_Q_X][j], dy = xi[1] - t->q[SPH_Q_X + 1][j], dz = xi[2] - t->q[SPH_Q_X + 2][j];
-    const sphreal W = c->wnorm * sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c->hinv);
-    sm += t->q[SPH_Q_VOL][j] * (t->q[SPH_Q_RHO][j] - c->rho0) * W;
-    sv += t->q[SPH_Q_VOL][j] * W;
+  for (int j = 0; j < l->n; j++) {
+    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j];
+    const sphreal VW = VOL[j] * (c.wnorm * sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv));
+    sm += S[j] * VW;
+    sv += VW;
   }
-  if (sph->par.reinit == SPH_REINIT_SHEPARD) sph->rate.ds[i] = (double)(sm / (sv * c->rho0));
-  else sph->rate.ds[i] = (double)sm / (double)c->rho0 + (double)sv - 1.0;
+  if (w->sph->par.reinit == SPH_REINIT_SHEPARD)
+    w->sph->rate.ds[i] = (double)(sm / sv);
+  else
+    w->sph->rate.ds[i] = (double)sm + (double)sv - 1.0;
 }
 
-/* All markers of one cell. Boundary markers see fluid only; they take no part in a SUM sweep. */
-SPH_INLINE void SweepCell(const SphPairConst *c, const int kernel, const SphSweep sweep, Sph sph, const SphCpu *cpu, int cell, Tile *t)
+/* Copy what lies within 2h of markers [i0,i1) of the cell into the list; fluidonly leaves boundary markers out. */
+SPH_INLINE void Gather(const int nq, const Sweep *w, const int cc[3], int i0, int i1, int fluidonly, List *l)
 {
-  const SphGrid *g = &cpu->grid;
-  const int      i0 = cpu->cellstart[2 * cell], ib = cpu->cellstart[2 * cell + 1], i1 = cpu->cellstart[2 * cell + 2];
-  const sphreal *base = (const sphreal *)cpu->q;
-  const int      onlywalls = sweep == SPH_SWEEP_AUX && sph->par.zeta == 0.0;
+  const SphGrid *g = &w->cpu->grid;
+  SphBox box;
+  int m = 0;
 
-  if (i0 == i1 || (onlywalls && ib == i1)) return;
-  TileGather(cpu, cell % g->n[0], cell / g->n[0] % g->n[1], cell / (g->n[0] * g->n[1]), t);
-  for (int i = i0; i < i1; i++) {
-    const int boundary = i >= ib;
-    sphreal   own[SPH_NQ];
-    if (boundary ? sweep == SPH_SWEEP_SUM || (sweep == SPH_SWEEP_AUX && sph->par.wall != SPH_WALL_ADAMI) : onlywalls) continue;
-    for (int k = 0; k < SPH_NQ; k++) own[k] = base[(size_t)k * (size_t)cpu->stride + (size_t)i];
-    const int m = SphFilter(t->q[0], t->q[1], t->q[2], boundary ? t->nfluid : t->n, own[0], own[1], own[2], c->r2max, t->idx);
-    if (sweep == SPH_SWEEP_RATES) Rates(c, kernel, t, m, sph, i, own);
-    else if (sweep == SPH_SWEEP_SUM) Sum(c, kernel, t, m, sph, i, own);
-    else if (boundary) AuxBoundary(c, kernel, t, m, sph, i, own);
-    else AuxFluid(c, kernel, t, m, sph, i, own, own + SPH_Q_V, own[SPH_Q_RHO]);
-  }
-}
-
-static void SweepAll(const SphPairConst *c, const int kernel, const SphSweep sweep, Sph sph, const SphCpu *cpu)
-{
-  const int ncell = cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2];
-#pragma omp parallel num_threads((int)cpu->threads)
-  {
-    char *mem = (char *)cpu->tiles + (size_t)omp_get_thread_num() * cpu->tilebytes;
-    Tile  t;
-    for (int k = 0; k < SPH_NQ; k++) t.q[k] = (sphreal *)mem + (size_t)k * (size_t)cpu->tilecap;
-    t.idx = (int *)((sphreal *)mem + (size_t)SPH_NQ * (size_t)cpu->tilecap);
-#define SPH_CELLS(K, S) \
-  _Pragma("omp for schedule(dynamic, 8)") for (int cell = 0; cell < ncell; cell++) SweepCell(c, K, S, sph, cpu, cell, &t)
-    if (kernel) {
-      if (sweep == SPH_SWEEP_RATES) SPH_CELLS(1, SPH_SWEEP_RATES);
-      else if (sweep == SPH_SWEEP_AUX) SPH_CELLS(1, SPH_SWEEP_AUX);
-      else SPH_CELLS(1, SPH_SWEEP_SUM);
-    } else {
-      if (sweep == SPH_SWEEP_RATES) SPH_CELLS(0, SPH_SWEEP_RATES);
-      else if (sweep == SPH_SWEEP_AUX) SPH_CELLS(0, SPH_SWEEP_AUX);
-      else SPH_CELLS(0, SPH_SWEEP_SUM);
+  for (int k = 0; k < 3; k++) {
+    sphreal lo = w->q[k][i0], hi = lo;
+    for (int i = i0 + 1; i < i1; i++) {
+      lo = w->q[k][i] < lo ? w->q[k][i] : lo;
+      hi = w->q[k][i] > hi ? w->q[k][i] : hi;
     }
-#undef SPH_CELLS
+    box.c[k] = (sphreal)0.5 * (lo + hi);
+    box.e[k] = (sphreal)0.5 * (hi - lo);
+  }
+  for (int o = 0; o < 27; o++) {
+    const int ox = o % 3 - 1, oy = o / 3 % 3 - 1, oz = o / 9 - 1;
+    const int nx = sph_cell_neighbour(g, 0, cc[0], ox), ny = sph_cell_neighbour(g, 1, cc[1], oy),
+              nz = sph_cell_neighbour(g, 2, cc[2], oz);
+    if (nx < 0 || ny < 0 || nz < 0) continue;
+    const int d = 2 * sph_cell_index(g, nx, ny, nz), j0 = w->cpu->cellstart[d], j1 = w->cpu->cellstart[fluidonly ? d + 1 : d + 2];
+    const sphreal off[3] = {(sphreal)(ox * g->edge[0]), (sphreal)(oy * g->edge[1]), (sphreal)(oz * g->edge[2])};
+    const sphreal *src[SPH_NQ_MAX];
+    if (j0 == j1) continue;
+    for (int q = 0; q < nq; q++) src[q] = w->q[q] + j0;
+    m = SphSelect(nq, src, off, j1 - j0, &box, w->c.r2max, l->q, m, l->scratch);
+  }
+  l->n = SphPad(nq, (sphreal)100 / w->c.hinv, l->q, m);
+}
+
+static void GatherAny(const int nq, const Sweep *w, const int cc[3], int i0, int i1, int fluidonly, List *l)
+{
+  if (nq == SPH_NQ_BASE)
+    Gather(SPH_NQ_BASE, w, cc, i0, i1, fluidonly, l);
+  else if (nq == SPH_NQ_BASE + 1)
+    Gather(SPH_NQ_BASE + 1, w, cc, i0, i1, fluidonly, l);
+  else if (nq == SPH_NQ_BASE + 3)
+    Gather(SPH_NQ_BASE + 3, w, cc, i0, i1, fluidonly, l);
+  else
+    Gather(SPH_NQ_BASE + 4, w, cc, i0, i1, fluidonly, l);
+}
+
+/* Sums of one sweep for markers [i0,i1) of a cell, in groups. */
+static void SweepRange(const Sweep *w, Kernel kernel, int nq, const int cc[3], int i0, int i1, int fluidonly, List *l)
+{
+  for (int a = i0; a < i1; a += SPH_GROUP) {
+    const int b = PetscMin(a + SPH_GROUP, i1);
+    GatherAny(nq, w, cc, a, b, fluidonly, l);
+    for (int i = a; i < b; i++) kernel(w, l, i);
   }
 }
 
-PetscErrorCode SPH_SWEEP_NAME(Sph sph, SphSweep sweep)
+/* The loops above for each combination of compile-time choices. */
+#define SPH_RATES(K, V, U, D)                                                                                                    \
+  static void Rates_##K##V##U##D(const Sweep *w, const List *l, int i)                                                           \
+  {                                                                                                                              \
+    Rates(K, V, U, D, w, l, i);                                                                                                  \
+  }
+#define SPH_RATES_FORMS(K, V) SPH_RATES(K, V, 0, 0) SPH_RATES(K, V, 0, 1) SPH_RATES(K, V, 1, 0) SPH_RATES(K, V, 1, 1)
+SPH_RATES_FORMS(0, 0)
+SPH_RATES_FORMS(0, 1)
+SPH_RATES_FORMS(0, 2)
+SPH_RATES_FORMS(1, 0)
+SPH_RATES_FORMS(1, 1)
+SPH_RATES_FORMS(1, 2)
+#define SPH_RATES_ROW(K, V)                                                                                                      \
+  {                                                                                                                              \
+    {Rates_##K##V##00, Rates_##K##V##01},                                                                                        \
+    {                                                                                                                            \
+      Rates_##K##V##10, Rates_##K##V##11                                                                                         \
+    }                                                                                                                            \
+  }
+static const Kernel rates[2][3][2][2] = {{SPH_RATES_ROW(0, 0), SPH_RATES_ROW(0, 1), SPH_RATES_ROW(0, 2)},
+                                         {SPH_RATES_ROW(1, 0), SPH_RATES_ROW(1, 1), SPH_RATES_ROW(1, 2)}};
+
+#define SPH_OTHER(name)                                                                                                          \
+  static void name##_0(const Sweep *w, const List *l, int i)                                                                     \
+  {                                                                                                                              \
+    name(0, w, l, i);                                                                                                            \
+  }                                                                                                                              \
+  static void name##_1(const Sweep *w, const List *l, int i)                                                                     \
+  {                                                                                                                              \
+    name(1, w, l, i);                                                                                                            \
+  }
+SPH_OTHER(AuxFluid)
+SPH_OTHER(AuxBoundary)
+SPH_OTHER(Sum)
+
+/* Boundary markers see fluid only; they take no part in a SUM sweep. */
+void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
 {
   const SphParams *p = &sph->par;
-  const double     norm = sph_norm(p->kernel, (int)p->dim, p->h);
-  SphCpu          *cpu = (SphCpu *)sph->data;
-  SphPairConst     c;
+  const SphCpu *cpu = (const SphCpu *)sph->data;
+  const SphGrid *g = &cpu->grid;
+  const int ncell = g->n[0] * g->n[1] * g->n[2], nq = sweep == SPH_SWEEP_RATES ? (int)cpu->nq : SPH_NQ_BASE;
+  Kernel fluid = NULL, boundary = NULL;
+  Sweep w = {.c = sph_pair_const(p), .sph = sph, .cpu = cpu};
 
-  PetscFunctionBegin;
-  c.hinv = (sphreal)(1.0 / p->h);
-  c.r2max = (sphreal)(4.0 * p->h * p->h);
-  c.wnorm = (sphreal)norm;
-  c.fnorm = (sphreal)(norm / (p->h * p->h));
-  c.mu2 = (sphreal)(2.0 * p->mupair);
-  c.epsh2 = (sphreal)(p->epsilon * p->h * p->h);
-  c.zeta = (sphreal)p->zeta;
-  c.rho0 = (sphreal)p->rho0;
-  Prepare(sph, cpu, sweep);
-  SweepAll(&c, p->kernel, sweep, sph, cpu);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  Pointers(cpu, w.q);
+  if (sweep == SPH_SWEEP_RATES)
+    fluid = boundary = rates[p->kernel][p->viscosity][SphCpuTwoVelocities(p)][p->diffusion != SPH_DIFFUSION_NONE];
+  else if (sweep == SPH_SWEEP_SUM)
+    fluid = p->kernel ? Sum_1 : Sum_0;
+  else {
+    if (p->zeta > 0.0) fluid = p->kernel ? AuxFluid_1 : AuxFluid_0;
+    if (p->wall == SPH_WALL_ADAMI) boundary = p->kernel ? AuxBoundary_1 : AuxBoundary_0;
+  }
+#pragma omp parallel num_threads((int)cpu->threads)
+  {
+    sphreal *mem = (sphreal *)((char *)cpu->lists + (size_t)omp_get_thread_num() * cpu->listbytes);
+    List l;
+    for (int k = 0; k < SPH_NQ_MAX; k++) l.q[k] = mem + (size_t)k * (size_t)cpu->listcap;
+    l.scratch = (int *)(mem + (size_t)SPH_NQ_MAX * (size_t)cpu->listcap);
+#pragma omp for schedule(dynamic, 8)
+    for (int c = 0; c < ncell; c++) {
+      const int *s = cpu->cellstart + 2 * c, cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
+      if (fluid) SweepRange(&w, fluid, nq, cc, s[0], s[1], 0, &l);
+      if (boundary) SweepRange(&w, boundary, nq, cc, s[1], s[2], 1, &l);
+    }
+  }
 }

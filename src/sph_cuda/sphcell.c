@@ -1,6 +1,8 @@
-/* sphcell.c - cell grid, stable counting sort of the markers by cell, check for coincident markers. */
+/* sphcell.c - cell grid, stable counting sort of the markers by cell and along a Hilbert curve within it, check for coincident
+ * markers. */
 #include "sphimpl.h"
 #include <math.h>
+#include <omp.h>
 
 /* No side of the grid may need more cells than this; a stray marker is taken out long before. */
 #define SPH_MAXCELLS 200000000.0
@@ -21,8 +23,8 @@ static void OpenExtent(Sph sph, int k, double *lo, double *hi)
 PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *g)
 {
   const SphParams *p = &sph->par;
-  const double     want = 2.0 * p->h * (1.0 + skin);
-  double           cells = 1.0;
+  const double want = 2.0 * p->h * (1.0 + skin);
+  double cells = 1.0;
 
   PetscFunctionBegin;
   for (int k = 0; k < 3; k++) {
@@ -40,14 +42,16 @@ PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *g)
     } else {
       double lo, hi;
       OpenExtent(sph, k, &lo, &hi);
-      PetscCheck((hi - lo) / want < 1e6, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the markers spread over %g m along axis %c, more than 10^6 cells of %g m", hi - lo, 'x' + k, want);
+      PetscCheck((hi - lo) / want < 1e6, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+                 "the markers spread over %g m along axis %c, more than 10^6 cells of %g m", hi - lo, 'x' + k, want);
       g->lo[k] = lo - 0.5 * want;
       g->n[k] = (int)floor((hi - lo) / want) + 2;
       g->edge[k] = want;
     }
     cells *= g->n[k];
   }
-  PetscCheck(cells < SPH_MAXCELLS, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the domain needs %g search cells, more than %g", cells, SPH_MAXCELLS);
+  PetscCheck(cells < SPH_MAXCELLS, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the domain needs %g search cells, more than %g", cells,
+             SPH_MAXCELLS);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,7 +66,7 @@ static inline int SortKey(Sph sph, const SphGrid *g, PetscInt i)
 
 static void PermuteDouble(double **array, double **spare, const int *from, PetscInt n)
 {
-  double *src = *array, *dst = *spare;
+  double *restrict src = *array, *restrict dst = *spare;
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < n; i++) dst[i] = src[from[i]];
   *array = dst;
@@ -71,28 +75,142 @@ static void PermuteDouble(double **array, double **spare, const int *from, Petsc
 
 static void PermuteInt(int *array, int *work, const int *from, PetscInt n)
 {
+#pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];
+#pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < n; i++) array[i] = work[i];
 }
 
-/* from[new slot] = old slot; the order within a key is kept. cellstart gets nkeys+1 offsets. */
-static void CountingSort(PetscInt n, const int *key, PetscInt nkeys, int *cellstart, int *from)
+/* from[new slot] = old slot; the order within a key is kept, so the result is the same for any number of threads. start: nkeys+1
+ * offsets. */
+static PetscErrorCode CountingSort(PetscInt n, const int *key, PetscInt nkeys, int *start, int *from)
 {
-  for (PetscInt k = 0; k <= nkeys; k++) cellstart[k] = 0;
-  for (PetscInt i = 0; i < n; i++) cellstart[key[i] + 1]++;
-  for (PetscInt k = 0; k < nkeys; k++) cellstart[k + 1] += cellstart[k];
-  for (PetscInt i = 0; i < n; i++) from[cellstart[key[i]]++] = (int)i;
-  for (PetscInt k = nkeys; k > 0; k--) cellstart[k] = cellstart[k - 1];
-  cellstart[0] = 0;
+  const int threads = omp_get_max_threads();
+  int *count; /* per thread and key: how many, then where the next one goes */
+  PetscInt sum = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1((size_t)threads * (size_t)nkeys, &count));
+#pragma omp parallel num_threads(threads)
+  {
+    const PetscInt t = omp_get_thread_num(), nt = omp_get_num_threads(), i0 = n * t / nt, i1 = n * (t + 1) / nt;
+    int *mine = count + t * nkeys;
+    for (PetscInt k = 0; k < nkeys; k++) mine[k] = 0;
+    for (PetscInt i = i0; i < i1; i++) mine[key[i]]++;
+#pragma omp barrier
+#pragma omp single
+    {
+      for (PetscInt k = 0; k < nkeys; k++) {
+        start[k] = (int)sum;
+        for (PetscInt o = 0; o < nt; o++) {
+          const int c = count[o * nkeys + k];
+          count[o * nkeys + k] = (int)sum;
+          sum += c;
+        }
+      }
+      start[nkeys] = (int)sum;
+    }
+    for (PetscInt i = i0; i < i1; i++) from[mine[key[i]]++] = (int)i;
+  }
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Subdivision of a cell, 2^SPH_SUBBITS per axis, numbered along a Hilbert curve. */
+#define SPH_SUBBITS 2
+#define SPH_SUB (1 << SPH_SUBBITS)
+#define SPH_NSUB (SPH_SUB * SPH_SUB * SPH_SUB)
+
+/* Number of point x along the Hilbert curve: Skilling, AIP Conf. Proc. 707 (2004), transposed index of `dim` axes of SPH_SUBBITS
+ * bits. */
+static int HilbertNumber(int dim, const int p[3])
+{
+  int x[3] = {p[0], p[1], p[2]}, t = 0, number = 0;
+
+  for (int q = SPH_SUB / 2; q > 1; q >>= 1)
+    for (int i = 0; i < dim; i++) {
+      if (x[i] & q)
+        x[0] ^= q - 1;
+      else {
+        const int s = (x[0] ^ x[i]) & (q - 1);
+        x[0] ^= s;
+        x[i] ^= s;
+      }
+    }
+  for (int i = 1; i < dim; i++) x[i] ^= x[i - 1];
+  for (int q = SPH_SUB / 2; q > 1; q >>= 1)
+    if (x[dim - 1] & q) t ^= q - 1;
+  for (int b = SPH_SUBBITS - 1; b >= 0; b--)
+    for (int i = 0; i < dim; i++) number = 2 * number + (((x[i] ^ t) >> b) & 1);
+  return number;
+}
+
+/* Stable order of from[0..m) by place within the cell: consecutive markers lie close together, as the pair sums want them. */
+static void OrderWithinCell(Sph sph, const SphGrid *g, const int curve[SPH_NSUB], int *from, int m, int *work)
+{
+  int count[SPH_NSUB + 1] = {0};
+  int *sub = work, *sorted = work + m;
+
+  for (int j = 0; j < m; j++) {
+    int o[3] = {0, 0, 0};
+    for (int k = 0; k < sph->par.dim; k++) {
+      const double u = (sph->st.x[k][from[j]] - g->lo[k]) / g->edge[k];
+      o[k] = (int)((u - floor(u)) * SPH_SUB);
+      o[k] = o[k] < 0 ? 0 : (o[k] >= SPH_SUB ? SPH_SUB - 1 : o[k]);
+    }
+    sub[j] = curve[(o[2] * SPH_SUB + o[1]) * SPH_SUB + o[0]];
+    count[sub[j] + 1]++;
+  }
+  for (int s = 0; s < SPH_NSUB; s++) count[s + 1] += count[s];
+  for (int j = 0; j < m; j++) sorted[count[sub[j]]++] = from[j];
+  for (int j = 0; j < m; j++) from[j] = sorted[j];
+}
+
+static PetscErrorCode OrderWithinCells(Sph sph, const SphGrid *g, const int *start, PetscInt nkeys, int *from)
+{
+  int curve[SPH_NSUB], most = 0, *work;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < SPH_NSUB; k++)
+    curve[k] = HilbertNumber((int)sph->par.dim, (const int[3]){k % SPH_SUB, k / SPH_SUB % SPH_SUB, k / (SPH_SUB * SPH_SUB)});
+  for (PetscInt k = 0; k < nkeys; k++) most = PetscMax(most, start[k + 1] - start[k]);
+  PetscCall(PetscMalloc1((size_t)omp_get_max_threads() * 2 * (size_t)most, &work));
+#pragma omp parallel for schedule(static)
+  for (PetscInt k = 0; k < nkeys; k++) {
+    const int m = start[k + 1] - start[k];
+    if (m > 1) OrderWithinCell(sph, g, curve, from + start[k], m, work + (size_t)omp_get_thread_num() * 2 * (size_t)most);
+  }
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All arrays that live in sorted order; the saved state only where it must survive from step to step. */
+static PetscErrorCode PermuteAll(Sph sph, const int *from, int *work)
+{
+  const PetscInt n = sph->n;
+  const int saved = sph->par.integrator == SPH_INTEGRATOR_VERLET;
+  double *spare;
+  double **const arrays[] = {&sph->st.x[0],   &sph->st.x[1],   &sph->st.x[2],    &sph->st.v[0],    &sph->st.v[1],
+                             &sph->st.v[2],   &sph->st.s,      &sph->m,          &sph->wallratio,  &sph->rate.a[0],
+                             &sph->rate.a[1], &sph->rate.a[2], &sph->rate.dv[0], &sph->rate.dv[1], &sph->rate.dv[2],
+                             &sph->rate.ds,   &sph->ab[0],     &sph->ab[1],      &sph->ab[2],      &sph->stn.v[0],
+                             &sph->stn.v[1],  &sph->stn.v[2],  &sph->stn.s};
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(sph->cap, &spare)); /* it changes places with the arrays: as long as they are */
+  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]) - (saved ? 0 : 4); k++) PermuteDouble(arrays[k], &spare, from, n);
+  PetscCall(PetscFree(spare));
+  PermuteInt(sph->group, work, from, n);
+  PermuteInt(sph->id, work, from, n);
+#pragma omp parallel for schedule(static)
+  for (PetscInt i = 0; i < n; i++) sph->slot[sph->id[i]] = (int)i;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscInt *cellcap)
 {
   const PetscInt n = sph->n, nkeys = 2 * (PetscInt)g->n[0] * g->n[1] * g->n[2] + 1;
-  int           *key, *from;
-  double        *spare;
-  double       **arrays[] = {&sph->st.x[0],  &sph->st.x[1],   &sph->st.x[2],   &sph->st.v[0],   &sph->st.v[1],   &sph->st.v[2], &sph->st.s, &sph->m,     &sph->wallratio,
-                             &sph->rate.a[0], &sph->rate.a[1], &sph->rate.a[2], &sph->rate.dv[0], &sph->rate.dv[1], &sph->rate.dv[2], &sph->rate.ds, &sph->ab[0], &sph->ab[1], &sph->ab[2]};
+  int *key, *from;
 
   PetscFunctionBegin;
   if (nkeys + 1 > *cellcap) {
@@ -108,13 +226,9 @@ PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscI
     }
     key[i] = SortKey(sph, g, i);
   }
-  CountingSort(n, key, nkeys, *cellstart, from);
-  PetscCall(PetscMalloc1(n, &spare));
-  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) PermuteDouble(arrays[k], &spare, from, n);
-  PetscCall(PetscFree(spare));
-  PermuteInt(sph->group, key, from, n);
-  PermuteInt(sph->id, key, from, n);
-  for (PetscInt i = 0; i < n; i++) sph->slot[sph->id[i]] = (int)i;
+  PetscCall(CountingSort(n, key, nkeys, *cellstart, from));
+  PetscCall(OrderWithinCells(sph, g, *cellstart, nkeys - 1, from));
+  PetscCall(PermuteAll(sph, from, key));
   PetscCall(PetscFree2(key, from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,8 +245,10 @@ static PetscErrorCode CheckPair(Sph sph, const SphGrid *g, PetscInt i, PetscInt 
   }
   if (r2 < tol * tol) {
     const PetscInt a = PetscMin(sph->id[i], sph->id[j]), b = PetscMax(sph->id[i], sph->id[j]);
-    SETERRQ(sph->comm, PETSC_ERR_ARG_WRONG, "markers %" PetscInt_FMT " and %" PetscInt_FMT " lie on top of one another at (%g, %g, %g): their distance %.3g m must be at least 0.1 sph_dp = %.3g m", a, b, sph->st.x[0][i],
-            sph->st.x[1][i], sph->st.x[2][i], sqrt(r2), tol);
+    SETERRQ(sph->comm, PETSC_ERR_ARG_WRONG,
+            "markers %" PetscInt_FMT " and %" PetscInt_FMT
+            " lie on top of one another at (%g, %g, %g): their distance %.3g m must be at least 0.1 sph_dp = %.3g m",
+            a, b, sph->st.x[0][i], sph->st.x[1][i], sph->st.x[2][i], sqrt(r2), tol);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -147,7 +263,8 @@ PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *g, const int *cellstart)
       for (int cx = 0; cx < g->n[0]; cx++) {
         const int c = sph_cell_index(g, cx, cy, cz);
         for (int o = 0; o < 27; o++) {
-          const int nx = sph_cell_neighbour(g, 0, cx, o % 3 - 1), ny = sph_cell_neighbour(g, 1, cy, o / 3 % 3 - 1), nz = sph_cell_neighbour(g, 2, cz, o / 9 - 1);
+          const int nx = sph_cell_neighbour(g, 0, cx, o % 3 - 1), ny = sph_cell_neighbour(g, 1, cy, o / 3 % 3 - 1),
+                    nz = sph_cell_neighbour(g, 2, cz, o / 9 - 1);
           if (nx < 0 || ny < 0 || nz < 0) continue;
           const int d = sph_cell_index(g, nx, ny, nz);
           for (int i = cellstart[2 * c]; i < cellstart[2 * c + 2]; i++)

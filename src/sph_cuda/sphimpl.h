@@ -10,6 +10,9 @@
 #include "sph.h"
 #include "sphcell.h"
 
+/* Steps between the Euler steps of the Verlet integrator, sphstep.h. */
+#define SPH_VERLET_EVERY 40
+
 typedef struct {
   PetscInt  dim;
   PetscReal dp;      /* initial spacing, m */
@@ -33,6 +36,11 @@ typedef struct {
   int       kernel; /* SphKernelType */
   int       precision, wall, reinit;
   PetscBool viscositylattice;
+  int       viscosity;  /* SphViscosityType */
+  PetscReal alpha;      /* artificial viscosity, - */
+  int       diffusion;  /* SphDiffusionType */
+  PetscReal delta;      /* density diffusion, - */
+  int       integrator; /* SphIntegratorType */
 } SphParams;
 
 /* One array per component, n long. */
@@ -52,8 +60,8 @@ typedef struct _SphOps {
   PetscErrorCode (*setup)(Sph);
   PetscErrorCode (*build)(Sph);                    /* sort markers and find cell ranges when needed */
   PetscErrorCode (*rates)(Sph);                    /* all right-hand sides at the current state */
-  PetscErrorCode (*halfstep)(Sph, PetscReal dt);   /* state_n := state; state += dt/2 rates */
-  PetscErrorCode (*fullstep)(Sph, PetscReal dt);   /* state := state_n + dt rates */
+  PetscErrorCode (*halfstep)(Sph, PetscReal dt);   /* sph_step_half(); not called with verlet */
+  PetscErrorCode (*fullstep)(Sph, PetscReal dt);   /* sph_step_full_<integrator>(), verlet with span = sph->verletspan */
   PetscErrorCode (*reinit)(Sph);                   /* Eq. 9 */
   PetscErrorCode (*motion)(Sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a);
   PetscErrorCode (*force)(Sph, PetscInt group, PetscReal *f);
@@ -88,6 +96,8 @@ struct _p_Sph {
   PetscReal t, dt;              /* time and current step, s */
   PetscInt  step;
   PetscBool insidestep, fixedwarned;
+  PetscInt  verletstep;         /* steps since stn was last invalid: 0 asks for an Euler step */
+  PetscReal dtold, verletspan;  /* s; span of the Verlet step in progress, 0 for Euler */
   PetscReal evaluations;        /* marker right-hand sides evaluated */
 
   const SphOps *ops;

@@ -167,6 +167,7 @@ PetscErrorCode SphSetFields(Sph sph, const SphFields *f)
     }
     if (f->rho) sph->st.s[i] = f->rho[id] / sph->par.rho0 - 1.0;
   }
+  sph->verletstep = 0;
   PetscCall((*sph->ops->push)(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

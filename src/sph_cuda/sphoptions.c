@@ -5,6 +5,9 @@ const char *const SphKernelTypes[] = {"cubic", "wendland", "SphKernelType", "SPH
 const char *const SphPrecisions[] = {"single", "double", "SphPrecision", "SPH_PRECISION_", NULL};
 const char *const SphWallTypes[] = {"bce", "adami", "SphWallType", "SPH_WALL_", NULL};
 const char *const SphReinitTypes[] = {"none", "sum", "shepard", "SphReinitType", "SPH_REINIT_", NULL};
+const char *const SphViscosityTypes[] = {"eq6", "morris", "artificial", "SphViscosityType", "SPH_VISCOSITY_", NULL};
+const char *const SphDiffusionTypes[] = {"none", "molteni", "fourtakas", "SphDiffusionType", "SPH_DIFFUSION_", NULL};
+const char *const SphIntegratorTypes[] = {"rk2", "verlet", "symplectic", "SphIntegratorType", "SPH_INTEGRATOR_", NULL};
 
 static PetscErrorCode CheckEditable(Sph sph, const char *name)
 {
@@ -186,6 +189,39 @@ PetscErrorCode SphSetViscosityLattice(Sph sph, PetscBool normalise)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphSetViscosityType(Sph sph, SphViscosityType type)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckEditable(sph, "viscosity_type"));
+  sph->par.viscosity = (int)type;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphSetArtificialViscosity(Sph sph, PetscReal alpha)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckRange(sph, "artificial_alpha", alpha, 0.0, 10.0));
+  sph->par.alpha = alpha;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal delta)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckRange(sph, "density_diffusion_delta", delta, 0.0, 1.0));
+  sph->par.diffusion = (int)type;
+  sph->par.delta = delta;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckEditable(sph, "integrator"));
+  sph->par.integrator = (int)integrator;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphSetKernel(Sph sph, SphKernelType kernel)
 {
   PetscFunctionBegin;
@@ -353,12 +389,36 @@ static PetscErrorCode OptionsMethod(Sph sph, PetscOptionItems *PetscOptionsObjec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Choices between forms of the viscous term, the density equation and the time stepping. */
+static PetscErrorCode OptionsForms(Sph sph, PetscOptionItems *PetscOptionsObject)
+{
+  SphParams *p = &sph->par;
+  PetscEnum  e;
+  PetscReal  r;
+  PetscBool  set, set2;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsEnum("-sph_viscosity_type", "Viscous term: eq6, morris, or artificial (needs no sph_viscosity)", "SphSetViscosityType", SphViscosityTypes, (PetscEnum)p->viscosity, &e, &set));
+  if (set) PetscCall(SphSetViscosityType(sph, (SphViscosityType)e));
+  PetscCall(PetscOptionsReal("-sph_artificial_alpha", "Factor alpha of the artificial viscosity", "SphSetArtificialViscosity", p->alpha, &r, &set));
+  if (set) PetscCall(SphSetArtificialViscosity(sph, r));
+  e = (PetscEnum)p->diffusion;
+  r = p->delta;
+  PetscCall(PetscOptionsEnum("-sph_density_diffusion", "Density diffusion between fluid markers", "SphSetDensityDiffusion", SphDiffusionTypes, e, &e, &set));
+  PetscCall(PetscOptionsReal("-sph_density_diffusion_delta", "Factor delta of the density diffusion", "SphSetDensityDiffusion", r, &r, &set2));
+  if (set || set2) PetscCall(SphSetDensityDiffusion(sph, (SphDiffusionType)e, r));
+  PetscCall(PetscOptionsEnum("-sph_integrator", "Time integration of the fluid", "SphSetIntegrator", SphIntegratorTypes, (PetscEnum)p->integrator, &e, &set));
+  if (set) PetscCall(SphSetIntegrator(sph, (SphIntegratorType)e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphSetFromOptions(Sph sph)
 {
   PetscFunctionBegin;
   PetscOptionsBegin(sph->comm, sph->prefix[0] ? sph->prefix : NULL, "SPH fluid options", "Sph");
   PetscCall(OptionsGeometry(sph, PetscOptionsObject));
   PetscCall(OptionsMethod(sph, PetscOptionsObject));
+  PetscCall(OptionsForms(sph, PetscOptionsObject));
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -385,6 +445,8 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
       " steps\n",
       (double)p->zeta, (double)p->epsilon, p->viscositylattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit],
       p->reinitevery));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_viscosity_type %s, sph_artificial_alpha %g, sph_density_diffusion %s, sph_density_diffusion_delta %g, sph_integrator %s\n", SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
+                                   (double)p->delta, SphIntegratorTypes[p->integrator]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
   if (p->dtfixed > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dt %g s (fixed)\n", (double)p->dtfixed));

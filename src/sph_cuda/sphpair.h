@@ -11,22 +11,26 @@
 
 /* Constants of a run in the working precision. */
 typedef struct {
-  sphreal hinv;   /* 1/h, 1/m */
-  sphreal r2max;  /* (2h)^2, m^2 */
-  sphreal wnorm;  /* norm of W, 1/m^dim */
-  sphreal fnorm;  /* norm of F, 1/m^(dim+2) */
-  sphreal mu2;    /* mu_a + mu_b = 2 mu, Pa s */
-  sphreal epsh2;  /* epsilon h^2, m^2 */
-  sphreal zeta;   /* XSPH factor, - */
-  sphreal rho0;   /* kg/m^3 */
+  sphreal hinv;  /* 1/h, 1/m */
+  sphreal r2max; /* (2h)^2, m^2 */
+  sphreal wnorm; /* norm of W, 1/m^dim */
+  sphreal fnorm; /* norm of F, 1/m^(dim+2) */
+  sphreal mu2;   /* mu_a + mu_b = 2 mu, Pa s */
+  sphreal epsh2; /* epsilon h^2, m^2 */
+  sphreal zeta;  /* XSPH factor, - */
+  sphreal rho0;  /* kg/m^3 */
+  sphreal avisc; /* artificial viscosity: 2 alpha c_s h, m^2/s */
+  sphreal ddt;   /* density diffusion: 2 delta c_s h, m^2/s; 0 without */
+  sphreal g[3];  /* density diffusion, Fourtakas: f/c_s^2, 1/m; 0 for Molteni-Colagrossi */
 } SphPairConst;
 
 /*
   Eq. 7: p(rho) as a function of the deviation s = rho/rho0 - 1, so that small pressures lose no digits in single
-  precision: expm1/log1p are exact for small s. B = c_s^2 rho0/gamma (Pa).
+  precision: expm1/log1p are exact for small s, and so is the expanded seventh power. B = c_s^2 rho0/gamma (Pa).
 */
 SPH_INLINE double sph_eos(double s, double B, double gamma)
 {
+  if (gamma == 7.0) return B * s * (7.0 + s * (21.0 + s * (35.0 + s * (35.0 + s * (21.0 + s * (7.0 + s))))));
   return B * expm1(gamma * log1p(s));
 }
 
@@ -55,10 +59,61 @@ SPH_INLINE sphreal sph_viscosity(const SphPairConst *c, sphreal mb, sphreal rhoa
   return mb * c->mu2 * r2 * F / (rho * rho * (r2 + c->epsh2));
 }
 
+/* Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eq. 22: as sph_viscosity() with rho_a rho_b for the squared mean density. */
+SPH_INLINE sphreal sph_viscosity_morris(const SphPairConst *c, sphreal mb, sphreal rhoa, sphreal rhob, sphreal r2, sphreal F)
+{
+  return mb * c->mu2 * r2 * F / (rhoa * rhob * (r2 + c->epsh2));
+}
+
+/*
+  Artificial viscosity, Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992), Eq. 4.2 with beta = 0 and the reference sound speed:
+  factor of x_ab in dv_a/dt (1/s^2), >= 0 for approaching markers, else 0; vx = v_ab . x_ab.
+*/
+SPH_INLINE sphreal sph_viscosity_artificial(const SphPairConst *c, sphreal mb, sphreal rhoa, sphreal rhob, sphreal vx, sphreal r2,
+                                            sphreal F)
+{
+  const sphreal approach = vx < (sphreal)0 ? vx : (sphreal)0;
+  return mb * c->avisc * approach * F / ((rhoa + rhob) * (r2 + c->epsh2));
+}
+
+/*
+  Density diffusion between fluid markers, in d(rho_a/rho0)/dt (1/s); s = rho/rho0 - 1, gx = g . x_ab.
+  Molteni, Colagrossi, Comput. Phys. Commun. 180 (2009), Eq. 9: delta h c_s Sum V_b psi . grad W with psi = 2 (rho_b - rho_a)
+  x_ba/r2. Fourtakas, Dominguez, Vacondio, Rogers, Comput. Fluids 190 (2019): the hydrostatic part of the difference is taken out;
+  here with Eq. 7 linearised, s_a - s_b = f . x_ab/c_s^2 at rest (relative error of order gamma f h/c_s^2).
+*/
+SPH_INLINE sphreal sph_diffusion(const SphPairConst *c, sphreal Vb, sphreal sa, sphreal sb, sphreal gx, sphreal F)
+{
+  return c->ddt * Vb * (sa - sb - gx) * F;
+}
+
 /* Eq. 11: factor of (v_b - v_a) in the XSPH velocity (-), without zeta. */
 SPH_INLINE sphreal sph_xsph(sphreal mb, sphreal rhoa, sphreal rhob, sphreal W)
 {
   return (sphreal)2 * mb / (rhoa + rhob) * W;
 }
+
+#if defined(SPHIMPL_H)
+/* The constants from the parameters of a run. */
+SPH_INLINE SphPairConst sph_pair_const(const SphParams *p)
+{
+  const double norm = sph_norm(p->kernel, (int)p->dim, p->h);
+  SphPairConst c;
+
+  c.hinv = (sphreal)(1.0 / p->h);
+  c.r2max = (sphreal)(4.0 * p->h * p->h);
+  c.wnorm = (sphreal)norm;
+  c.fnorm = (sphreal)(norm / (p->h * p->h));
+  c.mu2 = (sphreal)(2.0 * p->mupair);
+  c.epsh2 = (sphreal)(p->epsilon * p->h * p->h);
+  c.zeta = (sphreal)p->zeta;
+  c.rho0 = (sphreal)p->rho0;
+  c.avisc = (sphreal)(2.0 * p->alpha * p->cs * p->h);
+  c.ddt = (sphreal)(p->diffusion == SPH_DIFFUSION_NONE ? 0.0 : 2.0 * p->delta * p->cs * p->h);
+  for (int k = 0; k < 3; k++)
+    c.g[k] = (sphreal)(p->diffusion == SPH_DIFFUSION_FOURTAKAS && k < p->dim ? p->f[k] / (p->cs * p->cs) : 0.0);
+  return c;
+}
+#endif
 
 #endif

@@ -1,44 +1,86 @@
 /*
-  sphsimd.h - the one loop that compilers do not vectorise by themselves: selecting the neighbours of a marker.
+  sphsimd.h - selecting the neighbours of a group of markers: the one loop that compilers do not vectorise by themselves.
 
-  SphFilter writes the indices k < n with |x_k - x|^2 < r2max, in increasing order, and returns their number. idx must have
-  room for n + 16 entries.
+  SphSelect appends to the list the markers k < n of one cell that lie within 2h of the group's bounding box, with their
+  nq quantities, in increasing order, and returns the new length. Position of marker k in the frame of the group: src[0..2][k] +
+  off. Entries up to 16 behind the end may be overwritten. scratch: n + 16 indices.
 */
 #ifndef SPHSIMD_H
 #define SPHSIMD_H
 
-#if defined(__AVX512F__)
+/* Bounding box of a group: centre and half extents, m. */
+typedef struct {
+  sphreal c[3], e[3];
+} SphBox;
+
+#if defined(SPH_PAIRS_single) && defined(__AVX512F__)
   #include <immintrin.h>
 
-static inline int sph_filter_float(const float *x, const float *y, const float *z, int n, float xi, float yi, float zi, float r2max, int *idx)
+static inline __m512 sph_boxgap(__m512 x, sphreal c, sphreal e)
 {
-  const __m512 X = _mm512_set1_ps(xi), Y = _mm512_set1_ps(yi), Z = _mm512_set1_ps(zi), R = _mm512_set1_ps(r2max);
-  const __m512i step = _mm512_set1_epi32(16);
-  __m512i       k = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  int           m = 0;
-  for (int b = 0; b < n; b += 16, k = _mm512_add_epi32(k, step)) {
-    const __mmask16 live = n - b >= 16 ? (__mmask16)0xffff : (__mmask16)((1u << (n - b)) - 1u);
-    const __m512    dx = _mm512_sub_ps(X, _mm512_maskz_loadu_ps(live, x + b)), dy = _mm512_sub_ps(Y, _mm512_maskz_loadu_ps(live, y + b)), dz = _mm512_sub_ps(Z, _mm512_maskz_loadu_ps(live, z + b));
-    const __m512    r2 = _mm512_fmadd_ps(dx, dx, _mm512_fmadd_ps(dy, dy, _mm512_mul_ps(dz, dz)));
-    const __mmask16 in = _mm512_mask_cmp_ps_mask(live, r2, R, _CMP_LT_OQ);
-    _mm512_storeu_si512(idx + m, _mm512_maskz_compress_epi32(in, k));
+  return _mm512_max_ps(_mm512_sub_ps(_mm512_abs_ps(_mm512_sub_ps(x, _mm512_set1_ps(c))), _mm512_set1_ps(e)), _mm512_setzero_ps());
+}
+
+SPH_INLINE int SphSelect(const int nq, const sphreal *const *src, const sphreal off[3], int n, const SphBox *box, sphreal r2max,
+                         sphreal *const *list, int m, int *scratch)
+{
+  const SphBox b = {{box->c[0] - off[0], box->c[1] - off[1], box->c[2] - off[2]}, {box->e[0], box->e[1], box->e[2]}};
+  (void)scratch;
+  for (int k = 0; k < n; k += 16) {
+    const __mmask16 live = n - k >= 16 ? (__mmask16)0xffff : (__mmask16)((1u << (n - k)) - 1u);
+    const __m512 x = _mm512_maskz_loadu_ps(live, src[0] + k), y = _mm512_maskz_loadu_ps(live, src[1] + k),
+                 z = _mm512_maskz_loadu_ps(live, src[2] + k);
+    const __m512 dx = sph_boxgap(x, b.c[0], b.e[0]), dy = sph_boxgap(y, b.c[1], b.e[1]), dz = sph_boxgap(z, b.c[2], b.e[2]);
+    const __m512 r2 = _mm512_fmadd_ps(dx, dx, _mm512_fmadd_ps(dy, dy, _mm512_mul_ps(dz, dz)));
+    const __mmask16 in = _mm512_mask_cmp_ps_mask(live, r2, _mm512_set1_ps(r2max), _CMP_LT_OQ);
+    if (!in) continue;
+    _mm512_storeu_ps(list[0] + m, _mm512_maskz_compress_ps(in, _mm512_add_ps(x, _mm512_set1_ps(off[0]))));
+    _mm512_storeu_ps(list[1] + m, _mm512_maskz_compress_ps(in, _mm512_add_ps(y, _mm512_set1_ps(off[1]))));
+    _mm512_storeu_ps(list[2] + m, _mm512_maskz_compress_ps(in, _mm512_add_ps(z, _mm512_set1_ps(off[2]))));
+  #pragma GCC unroll 16
+    for (int q = 3; q < nq; q++)
+      _mm512_storeu_ps(list[q] + m, _mm512_maskz_compress_ps(in, _mm512_maskz_loadu_ps(live, src[q] + k)));
     m += __builtin_popcount(in);
   }
   return m;
 }
-  #define SPH_HAVE_FILTER_FLOAT
+
+#else
+
+SPH_INLINE sphreal sph_boxgap(sphreal x, sphreal c, sphreal e)
+{
+  const sphreal d = (x > c ? x - c : c - x) - e;
+  return d > (sphreal)0 ? d : (sphreal)0;
+}
+
+SPH_INLINE int SphSelect(const int nq, const sphreal *const *src, const sphreal off[3], int n, const SphBox *box, sphreal r2max,
+                         sphreal *const *list, int m, int *scratch)
+{
+  int found = 0;
+  for (int k = 0; k < n; k++) {
+    const sphreal dx = sph_boxgap(src[0][k], box->c[0] - off[0], box->e[0]),
+                  dy = sph_boxgap(src[1][k], box->c[1] - off[1], box->e[1]),
+                  dz = sph_boxgap(src[2][k], box->c[2] - off[2], box->e[2]);
+    scratch[found] = k;
+    found += dx * dx + dy * dy + dz * dz < r2max;
+  }
+  for (int q = 0; q < nq; q++) {
+    const sphreal add = q < 3 ? off[q] : (sphreal)0;
+    for (int k = 0; k < found; k++) list[q][m + k] = src[q][scratch[k]] + add;
+  }
+  return m + found;
+}
+
 #endif
 
-#define SPH_FILTER_SCALAR(name, real) \
-  static inline int name(const real *x, const real *y, const real *z, int n, real xi, real yi, real zi, real r2max, int *idx) \
-  { \
-    int m = 0; \
-    for (int k = 0; k < n; k++) { \
-      const real dx = xi - x[k], dy = yi - y[k], dz = zi - z[k]; \
-      idx[m] = k; \
-      m += dx * dx + dy * dy + dz * dz < r2max; \
-    } \
-    return m; \
-  }
+/* Append markers far outside every support, without mass, up to a multiple of 16, so that loops over the list have no remainder.
+ */
+SPH_INLINE int SphPad(const int nq, sphreal far, sphreal *const *list, int m)
+{
+  const int end = (m + 15) & ~15;
+  for (int q = 0; q < nq; q++)
+    for (int k = m; k < end; k++) list[q][k] = q < 3 ? far : (sphreal)0;
+  return end;
+}
 
 #endif
