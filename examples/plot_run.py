@@ -105,11 +105,13 @@ def draw_markers(ax, fig, h, a, b, c, level):
     m = h["markers"]
     x, group = m["position"][:], m["group"][:]
     dp = float(m.attrs["spacing"])
-    slab = np.abs(x[:, c] - level) <= 0.5001 * dp if h.attrs["dimension"] == 3 else np.ones(len(x), bool)
+    away = np.abs(x[:, c] - level) if h.attrs["dimension"] == 3 else np.zeros(len(x))
+    slab = away <= 1.6 * dp
     names = {int(k[6:]): v.decode() if isinstance(v, bytes) else str(v) for k, v in m.attrs.items() if k.startswith("group_")}
-    fluid = slab & (group == -1)
+    fluid = np.flatnonzero(slab & (group == -1))
+    fluid = fluid[np.argsort(-away[fluid])]  # the nearest last, on top
     span = np.ptp(x[:, [a, b]], axis=0).max()
-    size = (dp / span * 6.2 * 72) ** 2
+    size = (1.1 * dp / span * 6.2 * 72) ** 2
     speed = np.linalg.norm(m["velocity"][:][fluid], axis=1)
     top = np.percentile(speed, 99.8) if speed.size and speed.max() > 0 else 1.0
     dots = ax.scatter(x[fluid, a], x[fluid, b], c=speed, s=size, marker="s", linewidths=0, cmap="viridis", vmin=0, vmax=top)

@@ -159,7 +159,7 @@ typedef struct _AppHistory *AppHistory;
 PetscErrorCode AppHistoryCreate(App *app, AppHistory *history);
 PetscErrorCode AppHistoryRecord(AppHistory history, App *app, PetscReal dt);
 PetscErrorCode AppHistoryDestroy(AppHistory *history);
-/* Largest values seen in the rows so far: speed (m/s), compression (-), residual over scale (-), audit losses. */
+/* Largest values seen in the rows so far: speed (m/s), compression (-), momentum residual and scale (kg m/s), audit losses. */
 typedef struct {
   PetscReal vmax, compression, residual, scale, forcelost, force, momentlost, moment, powerlost, power;
 } HistoryWorst;

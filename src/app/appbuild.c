@@ -280,7 +280,7 @@ static PetscErrorCode count_surfaces(App *app)
 static PetscErrorCode build_couple(App *app)
 {
   AppScene *s = &app->scene;
-  PetscReal dp, support;
+  PetscReal dp, support, dt;
   CoupleSurface surface;
 
   PetscFunctionBegin;
@@ -305,6 +305,7 @@ static PetscErrorCode build_couple(App *app)
   }
   AppDoing(app, "%s", "");
   PetscCall(CoupleSetUp(app->couple));
+  PetscCall(SphComputeTimeStep(app->sph, &dt)); /* refuses a fixed one that is not stable, before any file is made */
   PetscCall(count_surfaces(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

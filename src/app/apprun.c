@@ -164,7 +164,7 @@ static PetscErrorCode print_summary(Run *run)
     PetscCall(SphGetCounts(app->sph, &fluid, &boundary, &left));
     printf("  fluid: largest speed %.4g m/s, largest compression %.3g %%, %d of %d markers left the domain\n", (double)w.vmax,
            100 * (double)w.compression, (int)left, (int)fluid);
-    printf("  momentum balance: residual at most %.3g of its largest term (%.4g %s)\n", (double)w.residual, (double)w.scale,
+    printf("  momentum balance: residual at most %.3g of %.4g %s\n", (double)w.residual, (double)w.scale,
            app->dim == 2 ? "kg/s" : "kg m/s");
     printf("  transfer audit, at most: force lost %.3g of %.4g N, moment %.3g of %.4g N m, power %.3g of %.4g W%s\n",
            (double)w.forcelost, (double)w.force, (double)w.momentlost, (double)w.moment, (double)w.powerlost, (double)w.power,

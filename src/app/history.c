@@ -162,7 +162,7 @@ static PetscErrorCode put_fluid(AppHistory h, App *app)
   PetscCall(put(h, "momentum_scale", impulse, "largest term of the momentum balance", balance.scale));
   h->worst.vmax = PetscMax(h->worst.vmax, sums.vmax);
   h->worst.compression = PetscMax(h->worst.compression, sums.compression);
-  if (balance.scale > 0) h->worst.residual = PetscMax(h->worst.residual, norm3(balance.residual) / balance.scale);
+  h->worst.residual = PetscMax(h->worst.residual, norm3(balance.residual));
   h->worst.scale = PetscMax(h->worst.scale, balance.scale);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,22 @@
+# The frond command. Its tests are Python programs of Debian's interpreter, which has h5py and numpy.
+find_program(FROND_TEST_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(NOT FROND_TEST_PYTHON)
+  find_program(FROND_TEST_PYTHON python3 REQUIRED)
+endif()
+
+function(frond_app_test name label)
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
+    ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/${name}.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/${name} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 400 SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+endfunction()
+
+frond_app_test(app_badinput unit)
+frond_app_test(app_run unit)
+frond_app_test(app_help unit)
+frond_app_test(app_examples validation)
+
+add_test(NAME app_paraview COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/app_paraview.sh $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_paraview ${CMAKE_CURRENT_SOURCE_DIR})
+set_tests_properties(app_paraview PROPERTIES LABELS unit TIMEOUT 120 SKIP_RETURN_CODE 77)
+
+add_test(NAME format COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/format.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(format PROPERTIES LABELS unit TIMEOUT 60 SKIP_RETURN_CODE 77)

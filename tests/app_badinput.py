@@ -1,0 +1,116 @@
+"""Wrong input to the frond command: one line that names the field, its value and the rule, and an exit code that is not 0."""
+import os
+import sys
+
+import apptest
+
+frond = apptest.Frond(sys.argv[1], sys.argv[2])
+frond.write("small.yaml", apptest.SCENE)
+frond.write("afile", "not a folder\n")
+
+
+def bad(options, *words, code=1):
+    frond.refuses(["run", "small.yaml", *options.split()], words, code)
+
+
+# Material, geometry and resolution.
+for value in ("-2e5", "0", "nan", "inf"):
+    bad("-beam_rod_young " + value, "young", r"-2e\+?0?5|-200000|\b0|nan|inf", "positive|finite|number")
+for value in ("-1000", "0"):
+    bad("-beam_rod_density " + value, "density", value, "positive|> 0")
+    bad("-sph_density " + value, "density", value, "positive|> 0")
+    bad("-beam_rod_diameter " + ("-0.06" if value != "0" else "0"), "diameter", "positive")
+    bad("-sph_dp " + ("-0.04" if value != "0" else "0"), "sph_dp", "positive|needed|> 0|set")
+    bad("-sph_h " + ("-0.04" if value != "0" else "0"), "sph_h", "positive|> 0|at least")
+    bad("-beam_rod_elements " + ("-3" if value != "0" else "0"), "elements", "at least 1")
+    bad("-body_ball_size " + ("-0.06,0,0" if value != "0" else "0,0,0"), "ball", "size|radius", "positive|> 0")
+bad("-sph_viscosity -1", "viscosity", "-1")
+bad("-sph_h_over_dp 0.5", "h", r"0\.5|0\.02")
+bad("-sph_h 0.02", "h", r"0\.02|0\.5")
+bad("-beam_rod_end 0.05,0.2,0.2", "rod", "start and end", "length")
+bad("-beam_rod_diameter 0.01", "rod", "diameter|thin", r"0\.01", r"0\.04")
+bad("-beam_rod_EI -1e3", "beam_rod_EI", "positive")
+
+# Time.
+bad("-ancf_substeps 0", "substeps", "0", "1")
+bad("-time_end 0", "time_end", "positive")
+bad("-time_end -1", "time_end", "-1", "positive")
+bad("-time_step 1e-3", "time_step", "sph_dt")
+bad("-sph_dt 1", "sph_dt|time step", "1")
+bad("-sph_dt 0", "sph_dt")
+bad("-fluid false", "time_step", "needed")
+bad("-output_every -1", "output_every", "-1")
+bad("-history_every -1", "history_every", "-1")
+
+# The domain.
+bad("-domain_hi 0.4,0.4,-1", "domain_hi", "domain_lo")
+bad("-fluid_hi 0.4,0.4,0", "fluid", "no fluid|above")
+bad("-fluid_hi 0.01,0.01,0.01", "no fluid")
+bad("-fluid_hi 9,9,9", "inside the domain")
+bad("-walls xmin,zmin", "xmin", "periodic")
+bad("-walls zmid", "walls", "zmid", "none of")
+bad("-domain_periodic q", "domain_periodic", "q", "none of")
+bad("-wall_zmax_velocity 0,0,1", "wall_zmax_velocity", "along itself")
+bad("-wall_xmin_velocity 0,1,0", "wall_xmin_velocity", "walls")
+bad("-sph_dim 4", "sph_dim", "4", "2 or 3")
+bad("-sph_dp 1e-6", "sph_dp", "markers")
+bad("-gravity 0,0", "gravity", "2 numbers", "3")
+bad("-gravity 0,0,down", "gravity", "down", "not a number")
+
+# Markers on top of one another.
+bad("-beams rod,twin -beam_twin_start 0.05,0.2,0.2 -beam_twin_end 0.2,0.2,0.2 -beam_twin_elements 2 -beam_twin_diameter 0.06 "
+    "-beam_twin_density 2000 -beam_twin_young 1e6", "on top|overlap|closer|same place|coincide")
+bad("-bodies ball,twin -body_twin_shape sphere -body_twin_motion fixed -body_twin_size 0.06,0,0 -body_twin_position 0.31,0.2,0.2",
+    "on top|overlap|closer|same place|coincide")
+
+# Names.
+bad("-beams rod,rod", "beams", "rod", "twice")
+bad("-beams ../rod", "beams", "letters")
+bad("-scene_name ../../x", "scene_name", "letters")
+bad("-bodies ball,rod", "rod", "beam")
+bad("-beams stick", "stick", "needs", "start")
+
+# Options that nobody knows, and values that are none.
+bad("-beam_rod_yuong 1e6", "unknown option beam_rod_yuong", "beam_rod_young")
+bad("-sph_viscosty 2", "unknown option sph_viscosty", "sph_viscosity")
+bad("-completely_else 2", "unknown option completely_else")
+bad("-time_end soon", "time_end", "soon", "not a number")
+bad("-sph_viscosity thick", "sph_viscosity", "thick")
+bad("-beam_rod_elements 2.5", "elements", r"2\.5", "whole")
+bad("-fluid maybe", "fluid", "maybe", "true nor false")
+bad("-beam_rod_end1 glued", "end1", "glued", "free, pin, clamp")
+bad("-time_end", "time_end", "no value")
+bad("-output_fields colour", "output_fields", "colour", "none of")
+
+# Scene files.
+base = apptest.SCENE
+for name, text, words, code in (
+    ("tab.yaml", "time_end: 1\n\tsph: 2\n", ["tab.yaml", "not valid YAML", "line 2"], 1),
+    ("open.yaml", base + "\nbodies: [ball\n", ["open.yaml", "not valid YAML", "line 3[0-9]"], 1),
+    ("text.yaml", "hello world\n", ["text.yaml", "not valid YAML|sets nothing"], 1),
+    ("empty.yaml", "", ["empty.yaml", "sets nothing"], 1),
+    ("novalue.yaml", base + "\nsph_gamma:\n", ["sph_gamma", "no value"], 1),
+    ("binary.yaml", "a: 1\0\0\n", ["binary.yaml", "text"], 3),
+    ("misspelt.yaml", base.replace("max_speed", "maxspeed"), ["unknown option sph_maxspeed", "sph_max_speed"], 1),
+    ("misspelt2.yaml", base.replace("time_end:", "tmie_end:"), ["unknown option tmie_end", "time_end"], 1),
+    ("nodomain.yaml", base.replace("domain_hi", "domian_hi"), ["domain_hi", "domian_hi"], 1),
+):
+    frond.write(name, text)
+    frond.refuses(["run", name], words, code)
+    frond.refuses(["check", name], words, code)
+frond.refuses(["run", "nosuch.yaml"], ["nosuch.yaml", "No such file"], 3)
+frond.refuses(["run", "."], ["folder"], 3)
+
+# Output folders: these must fail for root too.
+bad("-output_dir /dev/null/x", "output_dir", "/dev/null", code=3)
+bad("-output_dir afile", "output_dir", "afile", code=3)
+bad("-output_dir afile/deep/er", "output_dir", "afile", code=3)
+
+# The command line itself.
+frond.refuses(["dance"], ["dance", "no command"])
+frond.refuses(["run"], ["scene file"])
+frond.refuses(["run", "small.yaml", "small.yaml"], ["small.yaml", "neither an option"])
+
+left = [n for n in os.listdir(frond.folder) if n.startswith("out_")]
+apptest.check(not left, "refused runs left folders behind: %s" % left)
+apptest.report()
