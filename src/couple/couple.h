@@ -50,6 +50,8 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[]
                                                 CoupleSurface *surface);
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetContext(CoupleSurface surface, void *ctx);
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name);
+/* A copy of the surface's operations, to drive it outside a Couple. */
+FROND_EXTERN PetscErrorCode CoupleSurfaceGetOps(CoupleSurface surface, CoupleSurfaceOps *ops);
 /* A held surface (wall, fixed body) takes up any force: the balance counts it as an impulse of walls. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceSetHeld(CoupleSurface surface, PetscBool held);
 FROND_EXTERN PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface);

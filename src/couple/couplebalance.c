@@ -32,6 +32,7 @@ PetscErrorCode CoupleBalanceStart(Couple c)
   PetscReal fluid[3], structure[3];
 
   PetscFunctionBegin;
+  c->left = -1;
   PetscCall(Momenta(c, fluid, structure, PETSC_TRUE));
   for (int k = 0; k < 3; k++) c->p0[k] = fluid[k] + structure[k];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -41,17 +42,19 @@ PetscErrorCode CoupleBalanceStart(Couple c)
 PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
 {
   CoupleBalance *b = &c->balance;
-  PetscReal f[3], rho0, dp, mass;
-  PetscInt dim, nfluid, left;
+  PetscReal f[3];
+  PetscInt left;
 
   PetscFunctionBegin;
   PetscCall(SphGetBodyForce(c->sph, f));
-  PetscCall(SphGetDensity(c->sph, &rho0));
-  PetscCall(SphGetSpacing(c->sph, &dp));
-  PetscCall(SphGetDimension(c->sph, &dim));
-  PetscCall(SphGetCounts(c->sph, &nfluid, NULL, &left));
-  mass = (PetscReal)(nfluid - left) * rho0 * (dim == 2 ? dp * dp : dp * dp * dp);
-  for (int k = 0; k < 3; k++) b->body[k] += dt * mass * f[k];
+  PetscCall(SphGetCounts(c->sph, NULL, NULL, &left));
+  if (left != c->left) { /* markers that leave take their mass along */
+    SphSums sums;
+    PetscCall(SphGetSums(c->sph, &sums));
+    c->mass = sums.mass;
+    c->left = left;
+  }
+  for (int k = 0; k < 3; k++) b->body[k] += dt * c->mass * f[k];
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
     PetscReal p[3], weight[3], support[3];

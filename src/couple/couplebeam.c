@@ -389,7 +389,7 @@ PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, P
   b->rhoA = spec.rhoA >= 0.0 ? spec.rhoA : spec.density * PETSC_PI * 0.25 * spec.diameter * spec.diameter;
   PetscCheck(spec.diameter >= dp * (1.0 - 1e-9), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "beam %" PetscInt_FMT ": diameter = %g m is thinner than the marker spacing sph_dp = %g m: a beam needs at least "
-                                   "one marker across; use sph_dp <= %g",
+             "one marker across; use sph_dp <= %g",
              beam, (double)spec.diameter, (double)dp, (double)spec.diameter);
   SectionFill(dim, 0.5 * spec.diameter, dp, depthmax, c);
   PetscCheck(c->n < 512, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,

@@ -28,7 +28,9 @@ struct _p_Couple {
   PetscInt n, cap;
   PetscReal dtmax;
   PetscBool setup;
-  PetscReal p0[3];       /* momentum at set-up */
+  PetscReal p0[3]; /* momentum at set-up */
+  PetscReal mass;  /* of the fluid, kg; for `left` markers gone */
+  PetscInt left;
   CoupleBalance balance; /* impulses accumulated so far */
 };
 

@@ -37,6 +37,13 @@ PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CoupleSurfaceGetOps(CoupleSurface surface, CoupleSurfaceOps *ops)
+{
+  PetscFunctionBegin;
+  *ops = surface->ops;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CoupleSurfaceSetHeld(CoupleSurface surface, PetscBool held)
 {
   PetscFunctionBegin;

@@ -47,7 +47,7 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   sph->par.gamma = 7.0;
   sph->par.zeta = 0.5;
   sph->par.epsilon = 0.01;
-  sph->par.viscositylattice = PETSC_TRUE;
+  sph->par.lattice = PETSC_TRUE;
   sph->par.alpha = 0.1;
   sph->par.delta = 0.1;
   sph->par.cfl = 0.25;
@@ -145,7 +145,7 @@ static PetscErrorCode CheckParameters(Sph sph)
              "sph_max_speed: the expected maximum speed (m/s, > 0) must be given, or sph_sound_speed");
   if (!sph->csset) p->cs = 10.0 * p->vmax;
   if (!sph->vmaxset) p->vmax = 0.1 * p->cs;
-  p->mupair = p->viscositylattice ? p->mu / SphViscosityLattice(p) : p->mu;
+  SphLattice(p);
   p->B = p->cs * p->cs * p->rho0 / p->gamma;
   PetscCheck(sph->domainset, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "domain_lo, domain_hi: the domain must be given");
   for (int k = 0; k < p->dim; k++) {
@@ -176,7 +176,8 @@ PetscErrorCode SphSetUp(Sph sph)
                  "initial pressure %g Pa of marker %" PetscInt_FMT ": must be > %g Pa for this sound speed", sph->st.s[i], i,
                  (double)(-0.5 * sph->par.B));
       sph->st.s[i] = expm1(log1p(sph->st.s[i] / sph->par.B) / sph->par.gamma);
-      sph->m[i] = sph->par.rho0 * pow(sph->par.dp, (double)sph->par.dim);
+      /* a site's volume at its density */
+      sph->m[i] = sph->par.rho0 * (1.0 + sph->st.s[i]) * pow(sph->par.dp, (double)sph->par.dim);
     } else {
       sph->m[i] *= sph->par.rho0;
       sph->wallratio[i] = SphWallRatio(&sph->par, sph->wallratio[i]);
@@ -297,10 +298,7 @@ PetscErrorCode SphStepEnd(Sph sph)
     sph->verletstep = 0;
     PetscCall(PetscLogEventEnd(SPH_Reinit, 0, 0, 0, 0));
   }
-  if (sph->step % sph->par.checkevery == 0) {
-    PetscCall((*sph->ops->pull)(sph));
-    PetscCall(SphCheckFinite(sph));
-  }
+  if (sph->step % sph->par.checkevery == 0) PetscCall((*(sph->ops->check ? sph->ops->check : SphCheckFinite))(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

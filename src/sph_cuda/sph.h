@@ -64,7 +64,7 @@ FROND_EXTERN PetscErrorCode SphSetBackgroundPressure(Sph sph, PetscReal pb);
 FROND_EXTERN PetscErrorCode SphSetXSPH(Sph sph, PetscReal zeta);
 FROND_EXTERN PetscErrorCode SphSetDensityReinit(Sph sph, SphReinitType type, PetscInt every);
 FROND_EXTERN PetscErrorCode SphSetViscosityEpsilon(Sph sph, PetscReal epsilon);
-FROND_EXTERN PetscErrorCode SphSetViscosityLattice(Sph sph, PetscBool normalise);
+FROND_EXTERN PetscErrorCode SphSetLatticeNormalisation(Sph sph, PetscBool normalise);
 FROND_EXTERN PetscErrorCode SphSetViscosityType(Sph sph, SphViscosityType type);
 /* Factor alpha of the artificial viscosity (default 0.1); acts like nu = alpha c_s h/(2 (dim + 2)) (Monaghan 2005). */
 FROND_EXTERN PetscErrorCode SphSetArtificialViscosity(Sph sph, PetscReal alpha);
@@ -99,7 +99,8 @@ FROND_EXTERN PetscErrorCode SphGetSupport(Sph sph, PetscReal *support);
 /*
   Markers. x, v: n x 3 (m, m/s; v may be NULL for rest). p: n (Pa) initial pressures, or NULL for zero.
   Boundary markers form groups (walls, each beam, each rigid body); volume: n (m^3), depth: n (m below the
-  surface). Marker masses are rho0 dp^dim for fluid and rho0 volume for boundary markers.
+  surface). Marker masses are rho(p) dp^dim for fluid, rho(p) the
+  density at the initial pressure, and rho0 volume for boundary markers.
 */
 FROND_EXTERN PetscErrorCode SphAddFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *p);
 FROND_EXTERN PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *volume,

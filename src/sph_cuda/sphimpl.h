@@ -19,7 +19,8 @@ typedef struct {
   PetscReal h;       /* smoothing length, m */
   PetscReal rho0;    /* reference density, kg/m^3 */
   PetscReal mu;      /* viscosity, Pa s */
-  PetscReal mupair;  /* viscosity in Eq. 6: mu, or mu over its lattice sum, Pa s */
+  PetscReal mupair;  /* viscosity in Eq. 6, lattice-normalised, Pa s */
+  PetscReal wnorm, fnorm; /* norms of W (1/m^dim) and F (1/m^(dim+2)), lattice-normalised */
   PetscReal vmax;    /* expected maximum speed, m/s */
   PetscReal cs;      /* speed of sound, m/s */
   PetscReal gamma;   /* Eq. 7, - */
@@ -35,7 +36,7 @@ typedef struct {
   PetscInt  reinitevery, checkevery;
   int       kernel; /* SphKernelType */
   int       precision, wall, reinit;
-  PetscBool viscositylattice;
+  PetscBool lattice;    /* normalise kernel and viscosity on the initial lattice */
   int       viscosity;  /* SphViscosityType */
   PetscReal alpha;      /* artificial viscosity, - */
   int       diffusion;  /* SphDiffusionType */
@@ -69,6 +70,7 @@ typedef struct _SphOps {
   PetscErrorCode (*pull)(Sph);                     /* make the host arrays current */
   PetscErrorCode (*push)(Sph);                     /* host arrays changed */
   PetscErrorCode (*destroy)(Sph);
+  PetscErrorCode (*check)(Sph);                    /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
 } SphOps;
 
 struct _p_Sph {
@@ -119,8 +121,8 @@ extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *c
 
 /* sphwall.c: factor r in v_ext = v_b + r (v_b - <v>) for a marker `depth` below a flat surface. */
 extern PetscReal SphWallRatio(const SphParams *par, PetscReal depth);
-/* Lattice sum of Eq. 6 for a quadratic field, 1 when exact. */
-extern PetscReal SphViscosityLattice(const SphParams *par);
+/* Set wnorm, fnorm and mupair from kernel, h, dp, mu. */
+extern void SphLattice(SphParams *par);
 
 /* sphcheck.c: a non-finite value in any field is PETSC_ERR_FP naming field, marker, step and time. */
 extern PetscErrorCode SphCheckFinite(Sph sph);

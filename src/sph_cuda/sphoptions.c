@@ -181,11 +181,11 @@ PetscErrorCode SphSetViscosityEpsilon(Sph sph, PetscReal epsilon)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphSetViscosityLattice(Sph sph, PetscBool normalise)
+PetscErrorCode SphSetLatticeNormalisation(Sph sph, PetscBool normalise)
 {
   PetscFunctionBegin;
-  PetscCall(CheckEditable(sph, "viscosity_lattice"));
-  sph->par.viscositylattice = normalise;
+  PetscCall(CheckEditable(sph, "lattice"));
+  sph->par.lattice = normalise;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -356,9 +356,9 @@ static PetscErrorCode OptionsMethod(Sph sph, PetscOptionItems *PetscOptionsObjec
   PetscCall(PetscOptionsReal("-sph_viscosity_epsilon", "Regularisation epsilon, Eq. 6", "SphSetViscosityEpsilon", p->epsilon, &r,
                              &set));
   if (set) PetscCall(SphSetViscosityEpsilon(sph, r));
-  PetscCall(PetscOptionsBool("-sph_viscosity_lattice", "Normalise Eq. 6 by its sum over the initial lattice",
-                             "SphSetViscosityLattice", p->viscositylattice, &set2, &set));
-  if (set) PetscCall(SphSetViscosityLattice(sph, set2));
+  PetscCall(PetscOptionsBool("-sph_lattice", "Normalise kernel, gradient and viscosity sums on the initial lattice",
+                             "SphSetLatticeNormalisation", p->lattice, &set2, &set));
+  if (set) PetscCall(SphSetLatticeNormalisation(sph, set2));
   PetscCall(PetscOptionsEnum("-sph_kernel", "Smoothing kernel", "SphSetKernel", SphKernelTypes, (PetscEnum)p->kernel, &e, &set));
   if (set) PetscCall(SphSetKernel(sph, (SphKernelType)e));
   PetscCall(PetscOptionsEnum("-sph_precision", "Arithmetic of pair sums", "SphSetPrecision", SphPrecisions,
@@ -441,9 +441,9 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_max_speed %g m/s, sph_sound_speed %g m/s\n", (double)p->vmax, (double)p->cs));
   PetscCall(PetscViewerASCIIPrintf(
       viewer,
-      "  sph_xsph %g, sph_viscosity_epsilon %g, sph_viscosity_lattice %d, sph_wall %s, sph_reinit %s every %" PetscInt_FMT
+      "  sph_xsph %g, sph_viscosity_epsilon %g, sph_lattice %d, sph_wall %s, sph_reinit %s every %" PetscInt_FMT
       " steps\n",
-      (double)p->zeta, (double)p->epsilon, p->viscositylattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit],
+      (double)p->zeta, (double)p->epsilon, p->lattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit],
       p->reinitevery));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_viscosity_type %s, sph_artificial_alpha %g, sph_density_diffusion %s, sph_density_diffusion_delta %g, sph_integrator %s\n", SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
                                    (double)p->delta, SphIntegratorTypes[p->integrator]));

@@ -97,13 +97,12 @@ SPH_INLINE sphreal sph_xsph(sphreal mb, sphreal rhoa, sphreal rhob, sphreal W)
 /* The constants from the parameters of a run. */
 SPH_INLINE SphPairConst sph_pair_const(const SphParams *p)
 {
-  const double norm = sph_norm(p->kernel, (int)p->dim, p->h);
   SphPairConst c;
 
   c.hinv = (sphreal)(1.0 / p->h);
   c.r2max = (sphreal)(4.0 * p->h * p->h);
-  c.wnorm = (sphreal)norm;
-  c.fnorm = (sphreal)(norm / (p->h * p->h));
+  c.wnorm = (sphreal)p->wnorm;
+  c.fnorm = (sphreal)p->fnorm;
   c.mu2 = (sphreal)(2.0 * p->mupair);
   c.epsh2 = (sphreal)(p->epsilon * p->h * p->h);
   c.zeta = (sphreal)p->zeta;
