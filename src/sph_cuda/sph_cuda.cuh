@@ -1,0 +1,109 @@
+/*
+  sph_cuda.cuh - private to the CUDA backend: device arrays, error handling, launches.
+
+  The whole state stays on the device between calls; the arrays of struct _p_Sph are a mirror that pull() makes current. All
+  work goes to one stream. Host functions that read a result synchronise that stream; nothing else does.
+*/
+#ifndef SPH_CUDA_CUH
+#define SPH_CUDA_CUH
+
+#include <cmath>
+#include <cuda_runtime.h>
+#include "frondsys.h"
+#include <petscviewer.h>
+extern "C" {
+#include "sphimpl.h"
+}
+
+#define SPH_BLOCK 128 /* threads per block */
+
+/* Device pointers; n long in sorted order unless said otherwise. Passed to kernels by value. */
+typedef struct {
+  int n;
+  SphState st, stn;
+  SphRates rate;
+  double *m, *wallratio, *ab[3];
+  double *xref[3]; /* positions at the last build, m */
+  int *group, *id, *slot;
+  unsigned *key;  /* sort key of each slot at the last build, see sphcell.h */
+  int *cellstart; /* 2 ncell + 2 offsets */
+} SphCudaArrays;
+
+typedef struct {
+  SphCudaArrays d;
+  SphGrid grid;
+  PetscInt keycap;     /* entries in d.cellstart */
+  unsigned *keyalt;    /* sort work space; afterwards flags of the overlap check */
+  int *from, *fromalt; /* from[new slot] = old slot */
+  double *spare;       /* one array of doubles, the target of a permutation */
+  void *q;             /* prepared quantities of the pair sums, 3 n four-vectors in the working precision */
+  void *temp;          /* work space of CUB */
+  size_t tempbytes;
+  void *result, *hresult;   /* result of a reduction on the device, and in pinned memory */
+  PetscInt nb;              /* boundary markers */
+  double *motion, *hmotion; /* 3 x nb x 3: x, v, a of boundary markers in the order added; device and pinned */
+  double *force, *hforce;   /* nb x 3 */
+  PetscInt dirty0, dirty1;  /* range of hmotion not yet on the device */
+  cudaEvent_t uploaded;     /* hmotion may be written again */
+  PetscBool uploading, built, hostcurrent, forcecurrent;
+  PetscBool timing; /* synchronise after every stage, so that -log_view attributes its time */
+  cudaStream_t stream;
+  double bytes; /* device memory in use */
+} SphCuda;
+
+/* The operations that exist once per precision (sph_cudapairs.cuh). */
+typedef struct {
+  PetscErrorCode (*aux)(Sph);   /* XSPH velocity, Eq. 11; Adami extrapolation */
+  PetscErrorCode (*rates)(Sph); /* Eqs. 4-6 */
+  PetscErrorCode (*sum)(Sph);   /* Eq. 9 into rate.ds */
+} SphCudaPairs;
+extern const SphCudaPairs SphCudaPairs_single, SphCudaPairs_double;
+
+extern PetscErrorCode SphCudaError(cudaError_t err, const char call[], const char function[], const char file[], int line);
+extern PetscErrorCode SphCudaStageEnd(SphCuda *cuda);
+extern PetscErrorCode SphCudaFlushMotion(Sph sph);
+extern PetscErrorCode SphCudaReserve(SphCuda *cuda, void **p, size_t bytes);
+
+/* sph_cudabuild.cu */
+extern PetscErrorCode SphCudaBuild(Sph sph);
+extern PetscErrorCode SphCudaSortBytes(PetscInt n, size_t *bytes);
+
+/* sph_cudastep.cu */
+typedef struct {
+  double lo[3], hi[3];
+} SphCudaBox;
+extern PetscErrorCode SphCudaReduceBytes(Sph sph, size_t *bytes);
+extern PetscErrorCode SphCudaMaxMove2(Sph sph, double *r2);
+extern PetscErrorCode SphCudaExtent(Sph sph, SphCudaBox *box);
+extern PetscErrorCode SphCudaCountLeft(Sph sph, PetscInt *left);
+extern PetscErrorCode SphCudaAnyFlag(Sph sph, const unsigned *flag, PetscBool *any);
+extern PetscErrorCode SphCudaCheck(Sph sph);
+extern PetscErrorCode SphCudaLimits(Sph sph, PetscReal *vmax, PetscReal *amax);
+extern PetscErrorCode SphCudaHalfStep(Sph sph, PetscReal dt);
+extern PetscErrorCode SphCudaFullStep(Sph sph, PetscReal dt);
+extern PetscErrorCode SphCudaReinit(Sph sph);
+
+/* Every CUDA call goes through this: a failure becomes a PETSc error that names the call. */
+#define SphCallCUDA(...)                                                                                                         \
+  do {                                                                                                                           \
+    const cudaError_t err_ = (__VA_ARGS__);                                                                                      \
+    if (PetscUnlikely(err_ != cudaSuccess)) return SphCudaError(err_, #__VA_ARGS__, PETSC_FUNCTION_NAME, __FILE__, __LINE__);    \
+  } while (0)
+
+/* Run kernel(args...) with one thread for each of n items. Valid C++ for nvcc and for a host compiler. */
+template <typename... P, typename... A>
+static inline cudaError_t SphLaunch(cudaStream_t stream, PetscInt n, void (*kernel)(P...), A... args)
+{
+  cudaLaunchConfig_t config = {};
+
+  if (n <= 0) return cudaSuccess;
+  config.gridDim = dim3((unsigned)((n + SPH_BLOCK - 1) / SPH_BLOCK));
+  config.blockDim = dim3(SPH_BLOCK);
+  config.stream = stream;
+  return cudaLaunchKernelEx(&config, kernel, static_cast<P>(args)...);
+}
+
+/* Item of this thread. */
+#define SPH_ITEM ((int)(blockIdx.x * blockDim.x + threadIdx.x))
+
+#endif
