@@ -1,2 +1,3 @@
 # Beams
 frond_test(test_ancf_element SOURCES test_ancf_element.c LIBS frond_ancf LABELS unit TIMEOUT 60)
+frond_test(test_ancf_ts SOURCES test_ancf_ts.c LABELS unit TIMEOUT 120)

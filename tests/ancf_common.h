@@ -20,26 +20,31 @@ static inline PetscErrorCode SeedSpec(PetscInt elements, AncfBeamSpec *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One beam, gravity gz along z, options of the test program's own string. */
-static inline PetscErrorCode BeamCreate(const AncfBeamSpec *s, PetscReal gz, const char options[], Ancf *ancf)
+/* One beam, gravity gz along z, options from a string of the test's own. *ancf is set even after an error. */
+static inline PetscErrorCode BeamCreate(const AncfBeamSpec *s, PetscReal gz, const char string[], Ancf *ancf)
 {
   PetscReal g[3] = {0, 0, gz};
+  PetscOptions options;
+  PetscErrorCode ierr;
 
   PetscFunctionBegin;
   PetscCall(AncfCreate(PETSC_COMM_SELF, ancf));
   PetscCall(AncfAddBeam(*ancf, s, NULL));
   PetscCall(AncfSetGravity(*ancf, g));
-  PetscCall(PetscOptionsPush(NULL));
-  PetscCall(PetscOptionsInsertString(NULL, options));
-  PetscCall(AncfSetFromOptions(*ancf));
-  PetscCall(AncfSetUp(*ancf));
+  PetscCall(PetscOptionsCreate(&options));
+  PetscCall(PetscOptionsInsertString(options, string));
+  PetscCall(PetscOptionsPush(options));
+  ierr = AncfSetFromOptions(*ancf);
+  if (!ierr) ierr = AncfSetUp(*ancf);
   PetscCall(PetscOptionsPop());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscOptionsDestroy(&options));
+  PetscFunctionReturn(ierr);
 }
 
 PETSC_UNUSED static char test_message[2048]; /* of the last error caught */
 
-static inline PetscErrorCode TestCatch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
+static inline PetscErrorCode TestCatch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
+                                       PetscErrorType p, const char *mess, void *ctx)
 {
   (void)comm;
   (void)line;
@@ -51,15 +56,15 @@ static inline PetscErrorCode TestCatch(MPI_Comm comm, int line, const char *fun,
 }
 
 /* The call must fail with this code, and its one-line message must name the word. */
-#define TEST_ERROR(call, code, word) \
-  do { \
-    PetscErrorCode te_; \
-    test_message[0] = 0; \
-    PetscCall(PetscPushErrorHandler(TestCatch, NULL)); \
-    te_ = call; \
-    PetscCall(PetscPopErrorHandler()); \
-    TEST(te_ == (code), "%s returned %d, expected %d", #call, (int)te_, (int)(code)); \
-    TEST(strstr(test_message, word) != NULL, "message '%s' does not name '%s'", test_message, word); \
+#define TEST_ERROR(call, code, word)                                                                                             \
+  do {                                                                                                                           \
+    PetscErrorCode te_;                                                                                                          \
+    test_message[0] = 0;                                                                                                         \
+    PetscCall(PetscPushErrorHandler(TestCatch, NULL));                                                                           \
+    te_ = call;                                                                                                                  \
+    PetscCall(PetscPopErrorHandler());                                                                                           \
+    TEST(te_ == (code), "%s returned %d, expected %d", #call, (int)te_, (int)(code));                                            \
+    TEST(strstr(test_message, word) != NULL, "message '%s' does not name '%s'", test_message, word);                             \
   } while (0)
 
 /* Reproducible uniform numbers in [-1,1): 64-bit linear congruential generator. */

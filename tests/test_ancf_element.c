@@ -146,7 +146,8 @@ static void TestObjectivity(AncfStrain strain)
 
         TEST_NEAR(P[3 * i + r][k], y, 1e-12 * scale, "force under a rigid motion");
         if (i % 2 == 0) force[r] += Q[3 * i + r][k];
-        moment[r] += e[3 * i + (r + 1) % 3][k] * Q[3 * i + (r + 2) % 3][k] - e[3 * i + (r + 2) % 3][k] * Q[3 * i + (r + 1) % 3][k];
+        moment[r] +=
+            e[3 * i + (r + 1) % 3][k] * Q[3 * i + (r + 2) % 3][k] - e[3 * i + (r + 2) % 3][k] * Q[3 * i + (r + 1) % 3][k];
       }
     for (int r = 0; r < 3; r++) {
       TEST_NEAR(force[r], 0, 1e-13 * scale, "internal forces have no resultant");
@@ -160,7 +161,8 @@ static void TestStraight(AncfStrain strain)
 {
   /* Hermite beam stiffness EI/l^3 [12 6l -12 6l; 6l 4l2 -6l 2l2; ...] acts on transverse displacement and slope. */
   const double EI = 0.7, EA = 11, l = 0.6;
-  const double ref[16] = {12, 6 * l, -12, 6 * l, 6 * l, 4 * l * l, -6 * l, 2 * l * l, -12, -6 * l, 12, -6 * l, 6 * l, 2 * l * l, -6 * l, 4 * l * l};
+  const double ref[16] = {12,  6 * l,  -12, 6 * l,  6 * l, 4 * l * l, -6 * l, 2 * l * l,
+                          -12, -6 * l, 12,  -6 * l, 6 * l, 2 * l * l, -6 * l, 4 * l * l};
   AncfRule rule;
   AncfSection s;
   AncfLanes e[12], Q[12], K[ANCF_TANGENT];
@@ -175,7 +177,8 @@ static void TestStraight(AncfStrain strain)
   AncfTangentExpand(K, 3, k);
   for (int c = 0; c < 12; c++) TEST_NEAR(Q[c][0], 0, 1e-13, "a straight element is free of force");
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) TEST_NEAR(k[12 * (3 * i + 2) + 3 * j + 2], EI / (l * l * l) * ref[4 * i + j], 1e-11, "Hermite bending stiffness");
+    for (int j = 0; j < 4; j++)
+      TEST_NEAR(k[12 * (3 * i + 2) + 3 * j + 2], EI / (l * l * l) * ref[4 * i + j], 1e-11, "Hermite bending stiffness");
 }
 
 static void TestMass(void)

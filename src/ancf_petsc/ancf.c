@@ -532,9 +532,9 @@ PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, Petsc
   PetscCall(TSGetStepNumber(ancf->ts, &s));
   PetscCall(TSGetSNESIterations(ancf->ts, &n));
   PetscCall(TSGetKSPIterations(ancf->ts, &l));
-  if (steps) *steps = s;
-  if (newton) *newton = n;
-  if (linear) *linear = l;
+  if (steps) *steps = s - ancf->uncounted[0];
+  if (newton) *newton = n - ancf->uncounted[1];
+  if (linear) *linear = l - ancf->uncounted[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

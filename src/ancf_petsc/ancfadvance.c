@@ -109,6 +109,12 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
   if (!fixedstep && ancf->step > 0) dt = PetscMin(ancf->step, t - t0);
   PetscCall(AncfSetNewtonFloor(ancf, dt));
+  if (ancf->restart && ancf->form == ANCF_FORM_SECOND) {
+    PetscCall(AncfComputeAcceleration(ancf));
+    PetscCall(PetscArraycpy(ancf->history, ancf->a, n));
+    PetscCall(AncfAlphaStart(ancf, dt));
+  }
+  ancf->restart = PETSC_FALSE;
   PetscCall(TSSetTimeStep(ancf->ts, dt));
   if (ancf->form == ANCF_FORM_SYMPLECTIC) { /* sums its stages' times and matches no final time: count steps instead */
     PetscInt steps;

@@ -51,8 +51,11 @@ struct _p_Ancf {
   TS ts;
   Vec U, V;
   Mat J;
-  PetscReal *backup; /* state at the start of AncfAdvance(), 2 x nodes x 6 */
-  PetscReal step;    /* what an adaptive TS wants next, s; 0: unknown */
+  PetscReal *backup;          /* state at the start of AncfAdvance(), 2 x nodes x 6 */
+  PetscReal *history, *vprev; /* acceleration carried by TSALPHA2, velocity before the step */
+  PetscBool restart, priming; /* TS must start afresh; AncfAlphaStart() is at work */
+  PetscInt uncounted[3];      /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
+  PetscReal step;             /* what an adaptive TS wants next, s; 0: unknown */
 };
 
 extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
@@ -79,6 +82,7 @@ extern PetscErrorCode AncfTSDestroy(Ancf ancf);
 extern PetscErrorCode AncfTSSetUp(Ancf ancf);
 extern PetscErrorCode AncfTSPush(Ancf ancf);
 extern PetscErrorCode AncfTSPull(Ancf ancf);
+extern PetscErrorCode AncfTSTouch(Ancf ancf); /* second-order form: U and V wrap e and v, say that these changed */
 /* f = M a + Q^e(e) - Q^g - Q^a; a may be NULL. Arrays are nodes x 6 with the given strides between nodes. */
 extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f,
                                    PetscInt fstride);
@@ -94,6 +98,12 @@ extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscRea
 /* ancfadvance.c */
 extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
 extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
+
+/* ancfalpha.c */
+extern PetscErrorCode AncfAlphaSetUp(Ancf ancf);
+extern PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt);
+extern PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f);
+extern PetscErrorCode AncfAlphaJacobian(Ancf ancf, PetscReal shift, Mat P);
 
 /* ancfmass.c */
 extern PetscErrorCode AncfMassFactor(Ancf ancf);

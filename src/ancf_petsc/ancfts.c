@@ -236,8 +236,12 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(VecGetArrayRead(A, &a));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfResidual(ancf, u, a, 6, f, 6));
-  AncfFixRows(ancf, a, 6, f, 6);
+  if (ancf->priming)
+    PetscCall(AncfAlphaFunction(ancf, a, f));
+  else {
+    PetscCall(AncfResidual(ancf, u, a, 6, f, 6));
+    AncfFixRows(ancf, a, 6, f, 6);
+  }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(A, &a));
   PetscCall(VecRestoreArrayRead(U, &u));
@@ -256,7 +260,10 @@ static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, Pe
   (void)A;
   (void)shiftV;
   PetscCall(VecGetArrayRead(U, &u));
-  PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, shiftA, J, P));
+  if (((Ancf)ctx)->priming)
+    PetscCall(AncfAlphaJacobian((Ancf)ctx, shiftA, P));
+  else
+    PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, shiftA, J, P));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -402,6 +409,7 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(ancf->backup));
+  PetscCall(PetscFree2(ancf->history, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
   PetscCall(MatDestroy(&ancf->J));
@@ -429,6 +437,17 @@ PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, Mat *J)
   PetscCall(MatSetFromOptions(*J));
   PetscCall(MatXAIJSetPreallocation(*J, bs, nnz, NULL, NULL, NULL));
   PetscCall(PetscFree(nnz));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    PetscReal zero[4 * 144] = {0};
+
+    for (PetscInt k = 0; k < ancf->beams[b].spec.elements; k++) {
+      PetscInt idx[2] = {ancf->beams[b].node + k, ancf->beams[b].node + k + 1};
+
+      PetscCall(MatSetValuesBlocked(*J, 2, idx, 2, idx, zero, INSERT_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(*J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*J, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -519,6 +538,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
     PetscCall(TSGetSNES(ancf->ts, &snes));
     PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
+    PetscCall(AncfAlphaSetUp(ancf));
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {
@@ -537,6 +557,18 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfTSTouch(Ancf ancf)
+{
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArray(ancf->U, &y));
+  PetscCall(VecRestoreArray(ancf->U, &y));
+  PetscCall(VecGetArray(ancf->V, &y));
+  PetscCall(VecRestoreArray(ancf->V, &y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* State -> TS, whose history is discarded. */
 PetscErrorCode AncfTSPush(Ancf ancf)
 {
@@ -545,12 +577,10 @@ PetscErrorCode AncfTSPush(Ancf ancf)
   PetscFunctionBegin;
   PetscCall(TSSetTime(ancf->ts, ancf->t));
   PetscCall(TSRestartStep(ancf->ts));
-  if (ancf->form == ANCF_FORM_SECOND) { /* U and V wrap the state: only say that it changed */
-    PetscCall(VecGetArray(ancf->U, &y));
-    PetscCall(VecRestoreArray(ancf->U, &y));
-    PetscCall(VecGetArray(ancf->V, &y));
-    PetscCall(VecRestoreArray(ancf->V, &y));
-  } else {
+  ancf->restart = PETSC_TRUE;
+  if (ancf->form == ANCF_FORM_SECOND)
+    PetscCall(AncfTSTouch(ancf));
+  else {
     PetscCall(VecGetArrayWrite(ancf->U, &y));
     for (PetscInt j = 0; j < ancf->nnodes; j++)
       for (PetscInt c = 0; c < 6; c++) {

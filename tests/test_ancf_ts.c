@@ -1,0 +1,418 @@
+/* test_ancf_ts.c - Jacobians of both forms, every TS type, conservation, continuation across calls, errors. */
+#include "ancf_common.h"
+
+static PetscErrorCode RandomState(Ancf a, PetscReal size)
+{
+  const PetscReal *e, *v;
+  PetscReal *x, *y;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(AncfGetNumNodes(a, &n));
+  PetscCall(AncfGetState(a, NULL, &e, &v, NULL));
+  PetscCall(PetscMalloc2(6 * n, &x, 6 * n, &y));
+  for (PetscInt i = 0; i < 6 * n; i++) {
+    x[i] = e[i] + (i >= 6 ? size * Random() : 0);
+    y[i] = i >= 6 && i < 6 * (n - 1) ? Random() : 0; /* both ends may be fixed */
+  }
+  PetscCall(AncfSetState(a, 0, x, y));
+  PetscCall(PetscFree2(x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  dF/du + shift dF/dudot column by column, as -snes_test_jacobian does, with fourth-order differences: error h^4 F^(5)/30
+  with lengths of 0.25 m gives 1e-16 * 4^5 relative, round-off 1e-16/h = 1e-12 of the largest entry.
+*/
+static PetscErrorCode TestJacobian(const char options[], PetscBool second)
+{
+  const PetscReal h = 1e-4, shift = 50, shiftV = 3, tol = 1e-8;
+  static const PetscReal step[4] = {-2, -1, 1, 2}, weight[4] = {1. / 12, -8. / 12, 8. / 12, -1. / 12};
+  AncfBeamSpec s;
+  Ancf a;
+  TS ts;
+  Vec u, v, w, F, D;
+  Mat J, E;
+  PetscInt n;
+  PetscReal err, scale;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &s));
+  s.young = 2e5;
+  s.end1 = ANCF_END_PIN;
+  PetscCall(BeamCreate(&s, -9.81, options, &a));
+  PetscCall(RandomState(a, 0.05));
+  PetscCall(AncfGetTS(a, &ts));
+  PetscCall(TSSetUp(ts));
+  PetscCall(TSGetSolution(ts, &u));
+  PetscCall(VecDuplicate(u, &v));
+  PetscCall(VecDuplicate(u, &w));
+  PetscCall(VecDuplicate(u, &F));
+  PetscCall(VecDuplicate(u, &D));
+  PetscCall(VecGetSize(u, &n));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(VecSetValue(v, i, Random(), INSERT_VALUES));
+    PetscCall(VecSetValue(w, i, Random(), INSERT_VALUES));
+  }
+  if (second) {
+    PetscCall(TSGetI2Jacobian(ts, &J, NULL, NULL, NULL));
+    PetscCall(TSComputeI2Jacobian(ts, 0, u, v, w, shiftV, shift, J, J));
+  } else {
+    PetscCall(TSGetIJacobian(ts, &J, NULL, NULL, NULL));
+    PetscCall(TSComputeIJacobian(ts, 0, u, w, shift, J, J, PETSC_FALSE));
+  }
+  PetscCall(MatConvert(J, MATSEQDENSE, MAT_INITIAL_MATRIX, &E));
+  PetscCall(MatNorm(E, NORM_INFINITY, &scale));
+  for (PetscInt j = 0; j < n; j++) {
+    PetscCall(VecZeroEntries(D));
+    for (int k = 0; k < 4; k++) {
+      PetscReal d = step[k] * h;
+
+      PetscCall(VecSetValue(u, j, d, ADD_VALUES));
+      PetscCall(VecSetValue(w, j, shift * d, ADD_VALUES));
+      if (second) {
+        PetscCall(VecSetValue(v, j, shiftV * d, ADD_VALUES));
+        PetscCall(TSComputeI2Function(ts, 0, u, v, w, F));
+        PetscCall(VecSetValue(v, j, -shiftV * d, ADD_VALUES));
+      } else
+        PetscCall(TSComputeIFunction(ts, 0, u, w, F, PETSC_FALSE));
+      PetscCall(VecSetValue(u, j, -d, ADD_VALUES));
+      PetscCall(VecSetValue(w, j, -shift * d, ADD_VALUES));
+      PetscCall(VecAXPY(D, -weight[k] / h, F));
+    }
+    for (PetscInt i = 0; i < n; i++) {
+      PetscScalar x;
+
+      PetscCall(VecGetValues(D, 1, &i, &x));
+      PetscCall(MatSetValue(E, i, j, x, ADD_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(E, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(E, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatNorm(E, NORM_INFINITY, &err));
+  printf("Jacobian %-40s |J - J_fd| / |J| = %.1e\n", options, err / scale);
+  TEST(err / scale < tol, "Jacobian of %s is off by %g", options, err / scale);
+  PetscCall(MatDestroy(&E));
+  PetscCall(VecDestroy(&v));
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&F));
+  PetscCall(VecDestroy(&D));
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Swing(const char options[], PetscInt elements, PetscReal dt, PetscReal T, PetscReal tip[3],
+                            PetscInt counts[3])
+{
+  AncfBeamSpec s;
+  Ancf a;
+  const PetscReal *e;
+  PetscInt n = (PetscInt)PetscFloorReal(T / dt + 0.5);
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(elements, &s));
+  PetscCall(BeamCreate(&s, -9.81, options, &a));
+  for (PetscInt i = 1; i <= n; i++) PetscCall(AncfAdvance(a, (PetscReal)i * dt));
+  PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
+  PetscCall(PetscArraycpy(tip, e + 6 * elements, 3));
+  if (counts) PetscCall(AncfGetCounts(a, &counts[0], &counts[1], &counts[2]));
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  Tip of the two-element seed beam at t = 0.2 s with each type, against RK4 with a tenth of the step. A first-order method
+  with dt = 5e-4 is off by about g t dt = 1e-3 m; a second-order one by (w dt)^2/12 = 1e-5 of the tip's drop of 0.2 m for the
+  bending frequencies of 20 rad/s that carry the motion, here with a factor of 5.
+*/
+static PetscErrorCode TestTypes(void)
+{
+  static const struct {
+    const char *options;
+    PetscReal tol;
+  } runs[] = {
+      {"-ancf_ts_type alpha2", 1e-5},
+      {"-ancf_ts_type alpha2 -ancf_ts_alpha_radius 1", 1e-5},
+      {"-ancf_ts_type theta", 1e-5},
+      {"-ancf_ts_type cn", 1e-5},
+      {"-ancf_ts_type bdf", 1e-5},
+      {"-ancf_ts_type alpha", 1e-5},
+      {"-ancf_ts_type arkimex", 1e-5},
+      {"-ancf_ts_type arkimex -ancf_ts_arkimex_type prssp2", 1e-5},
+      {"-ancf_ts_type rosw", 1e-5},
+      {"-ancf_ts_type beuler", 3e-3},
+      {"-ancf_ts_type rk", 1e-5},
+      {"-ancf_ts_type rk -ancf_ts_rk_type 2a", 1e-5},
+      {"-ancf_ts_type ssp", 1e-5},
+      {"-ancf_ts_type basicsymplectic -ancf_ts_basicsymplectic_type 2", 1e-5},
+      {"-ancf_ts_type alpha2 -ancf_mat_type aij", 1e-5},
+      {"-ancf_ts_type alpha2 -ancf_mat_type aij -ancf_pc_type lu", 1e-5},
+      {"-ancf_ts_type alpha2 -ancf_substeps 3", 1e-5},
+      {"-ancf_ts_type rk -ancf_substeps 7", 1e-5},
+      {"-ancf_ts_type basicsymplectic -ancf_ts_basicsymplectic_type 2 -ancf_substeps 3", 1e-5},
+      {"-ancf_ts_type alpha2 -ancf_ts_adapt_type basic -ancf_ts_rtol 1e-6 -ancf_ts_atol 1e-6", 1e-5},
+      {"-ancf_ts_type bdf -ancf_ts_adapt_type basic -ancf_ts_rtol 1e-6 -ancf_ts_atol 1e-6", 1e-5},
+      {"-ancf_ts_type rk -ancf_ts_adapt_type basic -ancf_ts_rtol 1e-6 -ancf_ts_atol 1e-6", 1e-5},
+  };
+  PetscReal ref[3], tip[3];
+
+  PetscFunctionBegin;
+  PetscCall(Swing("-ancf_ts_type rk -ancf_ts_rk_type 4", 2, 5e-5, 0.2, ref, NULL));
+  for (size_t k = 0; k < sizeof(runs) / sizeof(runs[0]); k++) {
+    PetscInt counts[3];
+
+    PetscCall(Swing(runs[k].options, 2, 5e-4, 0.2, tip, counts));
+    printf("%-88s tip error %9.2e m, steps %d, Newton %d\n", runs[k].options, (double)PetscAbsReal(tip[2] - ref[2]),
+           (int)counts[0], (int)counts[1]);
+    TEST_NEAR(tip[0], ref[0], runs[k].tol, runs[k].options);
+    TEST_NEAR(tip[1], ref[1], runs[k].tol, runs[k].options);
+    TEST_NEAR(tip[2], ref[2], runs[k].tol, runs[k].options);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 400 calls of one step are the same as one call of 400 steps: no restart, same Newton count, same tip to round-off. */
+static PetscErrorCode TestContinuation(const char type[])
+{
+  PetscReal a[3], b[3];
+  PetscInt na[3], nb[3];
+  char options[128];
+
+  PetscFunctionBegin;
+  PetscCall(Swing(type, 3, 1e-3, 0.4, a, na));
+  snprintf(options, sizeof(options), "%s -ancf_substeps 400", type);
+  PetscCall(Swing(options, 3, 0.4, 0.4, b, nb));
+  printf("%-40s 400 calls: %d steps, %d Newton iterations; one call: %d, %d\n", type, (int)na[0], (int)na[1], (int)nb[0],
+         (int)nb[1]);
+  TEST(na[0] == nb[0], "steps %d, %d", (int)na[0], (int)nb[0]);
+  TEST(PetscAbsInt(na[1] - nb[1]) <= 4, "Newton iterations %d, %d: the method restarts", (int)na[1], (int)nb[1]);
+  for (int c = 0; c < 3; c++) TEST_NEAR(a[c], b[c], 1e-8, "tip"); /* Newton's tolerance 1e-9, 400 steps */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Free flight with spin. The midpoint rule (radius 1, theta) conserves angular momentum, a quadratic invariant, up to Newton's
+   tolerance of 1e-9 per step relative to the first residual; generalized-alpha with damping only to second order. */
+static PetscErrorCode TestMomentum(const char options[], PetscReal tol)
+{
+  AncfBeamSpec s;
+  Ancf a;
+  const PetscReal *e, *v;
+  PetscReal x[30], y[30], p0[3], H0[3], p[3], H[3], w[3], E0 = 0, E1 = 0, k, u, q, scale;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &s));
+  s.end0 = ANCF_END_FREE;
+  PetscCall(BeamCreate(&s, 0, options, &a));
+  PetscCall(AncfGetState(a, NULL, &e, &v, NULL));
+  for (int i = 0; i < 30; i++) x[i] = e[i], y[i] = 0;
+  for (int j = 0; j < 5; j++) { /* spin about z and y at the centre, bending velocities, drift */
+    y[6 * j + 0] = 0.3;
+    y[6 * j + 1] = 4 * (x[6 * j] - 0.5) + PetscSinReal(3 * x[6 * j]);
+    y[6 * j + 2] = -2 * (x[6 * j] - 0.5);
+    y[6 * j + 4] = 4 + 3 * PetscCosReal(3 * x[6 * j]);
+    y[6 * j + 5] = -2;
+  }
+  PetscCall(AncfSetState(a, 0, x, y));
+  PetscCall(AncfGetMomentum(a, p0, H0));
+  PetscCall(AncfGetEnergy(a, &k, &u, &q));
+  E0 = k + u + q;
+  for (int i = 1; i <= 200; i++) PetscCall(AncfAdvance(a, 5e-4 * i));
+  PetscCall(AncfGetMomentum(a, p, H));
+  PetscCall(AncfGetEnergy(a, &k, &u, &q));
+  E1 = k + u + q;
+  PetscCall(AncfGetWeight(a, w));
+  scale = PetscSqrtReal(H0[0] * H0[0] + H0[1] * H0[1] + H0[2] * H0[2]);
+  printf("%-40s free flight: dp %.1e, dH/H %.1e, dE/E %.1e\n", options, (double)PetscAbsReal(p[1] - p0[1]),
+         (double)PetscAbsReal(H[2] - H0[2]) / scale, (double)((E1 - E0) / E0));
+  for (int c = 0; c < 3; c++) {
+    TEST_NEAR(w[c], 0, 0, "no weight without gravity");
+    TEST_NEAR(p[c], p0[c], 1e-10, "linear momentum"); /* Newton's residual 1e-9 EA eps dt, summed: telescopes to round-off */
+    TEST_NEAR(H[c], H0[c], tol * scale, "angular momentum");
+  }
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The support carries m (a_cm - g): dp/dt by central differences of the momentum = weight + reaction.
+   Largest frequency 1e3 rad/s: (w dt)^2/6 = 7e-5 of the axial oscillation, allowed 5e-4 of the weight of 88.8 N. */
+static PetscErrorCode TestReaction(void)
+{
+  const PetscReal dt = 2e-5, tol = 0.5 * 88.8e-3;
+  AncfBeamSpec s;
+  Ancf a;
+  PetscReal p0[3], p1[3], f[3] = {0}, w[3];
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(2, &s));
+  PetscCall(BeamCreate(&s, -9.81, "-ancf_ts_alpha_radius 1", &a));
+  PetscCall(AncfGetWeight(a, w));
+  TEST_REL(w[2], -7200 * PETSC_PI * 4e-4 * 9.81, 1e-12, "weight rho_s A L g");
+  for (int i = 1; i <= 1001; i++) {
+    PetscCall(AncfAdvance(a, dt * i));
+    if (i == 999) PetscCall(AncfGetMomentum(a, p0, NULL));
+    if (i == 1000) PetscCall(AncfGetReaction(a, f));
+  }
+  PetscCall(AncfGetMomentum(a, p1, NULL));
+  for (int c = 0; c < 3; c++) TEST_NEAR((p1[c] - p0[c]) / (2 * dt), f[c] + w[c], tol, "dp/dt = weight + reaction");
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Buoyancy (rho_s A - rho A_outer) g, also after a change of fluid density. */
+static PetscErrorCode TestBuoyancy(void)
+{
+  AncfBeamSpec s;
+  Ancf a;
+  PetscReal w[3];
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(3, &s));
+  PetscCall(BeamCreate(&s, -9.81, "-ancf_fluid_density 1000", &a));
+  PetscCall(AncfGetWeight(a, w));
+  TEST_REL(w[2], -6200 * PETSC_PI * 4e-4 * 9.81, 1e-12, "buoyant weight");
+  PetscCall(AncfSetFluidDensity(a, 0));
+  PetscCall(AncfGetWeight(a, w));
+  TEST_REL(w[2], -7200 * PETSC_PI * 4e-4 * 9.81, 1e-12, "weight in vacuum");
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddBad(AncfBeamSpec s)
+{
+  Ancf a;
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+  ierr = AncfAddBeam(a, &s, NULL);
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(ierr);
+}
+
+static PetscErrorCode CreateBad(const char options[])
+{
+  AncfBeamSpec s;
+  Ancf a = NULL;
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(2, &s));
+  ierr = BeamCreate(&s, -9.81, options, &a);
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(ierr);
+}
+
+static PetscErrorCode TestBadInput(void)
+{
+  AncfBeamSpec good, s;
+  const PetscReal bad[4] = {0, -1, NAN, INFINITY};
+  Ancf a;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &good));
+  for (int k = 0; k < 4; k++) {
+    s = good, s.young = bad[k];
+    TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "young");
+    s = good, s.density = bad[k];
+    TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "density");
+    s = good, s.diameter = bad[k];
+    TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "diameter");
+  }
+  s = good, s.elements = 0;
+  TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "elements");
+  s = good, s.end[0] = 0;
+  TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "length");
+  s = good, s.end[1] = NAN;
+  TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "end");
+  s = good, s.start[2] = INFINITY;
+  TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "start");
+  s = good, s.EI = 0;
+  TEST_ERROR(AddBad(s), PETSC_ERR_ARG_OUTOFRANGE, "EI");
+  s = good, s.velocity[1] = 1;
+  TEST_ERROR(AddBad(s), PETSC_ERR_ARG_INCOMP, "velocity");
+  TEST_ERROR(CreateBad("-ancf_substeps 0"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_substeps 0");
+  TEST_ERROR(CreateBad("-ancf_substeps 1001"), PETSC_ERR_ARG_OUTOFRANGE, "1..1000");
+  TEST_ERROR(CreateBad("-ancf_gravity 1,2"), PETSC_ERR_ARG_WRONG, "-ancf_gravity");
+  TEST_ERROR(CreateBad("-ancf_fluid_density -1"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_fluid_density");
+  TEST_ERROR(CreateBad("-ancf_quadrature_axial 0"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_quadrature_axial");
+  TEST_ERROR(CreateBad("-ancf_quadrature_bending 9"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_quadrature_bending");
+  TEST_ERROR(CreateBad("-ancf_ts_type pseudo"), PETSC_ERR_ARG_WRONG, "-ancf_ts_type pseudo");
+  TEST_ERROR(CreateBad("-ancf_ts_type arkimex -ancf_ts_arkimex_type 3"), PETSC_ERR_ARG_WRONG, "-ancf_ts_arkimex_type 3");
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+  TEST_ERROR(AncfSetUp(a), PETSC_ERR_ARG_WRONGSTATE, "no beams");
+  TEST_ERROR(AncfAdvance(a, 1), PETSC_ERR_ARG_WRONGSTATE, "AncfSetUp");
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Failures at run time: named, and the state is the one before the call. */
+static PetscErrorCode TestFailures(void)
+{
+  AncfBeamSpec s;
+  Ancf a;
+  PetscReal *Q, t, tip;
+  const PetscReal *e;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &s));
+  PetscCall(BeamCreate(&s, -9.81, "", &a));
+  TEST_ERROR(AncfAddBeam(a, &s, NULL), PETSC_ERR_ARG_WRONGSTATE, "after AncfSetUp");
+  TEST_ERROR(AncfAdvance(a, 0), PETSC_ERR_ARG_OUTOFRANGE, "after the current time");
+  PetscCall(AncfAdvance(a, 1e-2));
+  PetscCall(AncfGetLoads(a, &Q));
+  Q[15] = NAN;
+  TEST_ERROR(AncfAdvance(a, 2e-2), PETSC_ERR_FP, "Beam 0, node 2");
+  Q[15] = 0;
+  PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
+  tip = e[26];
+  Q[26] = 1e200; /* overflows whatever the step */
+  TEST_ERROR(AncfAdvance(a, 2e-2), PETSC_ERR_NOT_CONVERGED, "beam 0, node 4");
+  PetscCall(AncfGetState(a, &t, &e, NULL, NULL));
+  TEST_NEAR(t, 1e-2, 0, "time after a failure");
+  TEST_NEAR(e[26], tip, 0, "tip after a failure");
+  Q[26] = 0;
+  PetscCall(AncfAdvance(a, 2e-2));
+  PetscCall(AncfDestroy(&a));
+  PetscCall(BeamCreate(&s, -9.81, "-ancf_snes_max_it 3",
+                       &a)); /* too few for a step of 0.3 s, a third of the swing's period, but not for a small one */
+  PetscCall(AncfAdvance(a, 0.3));
+  {
+    PetscInt steps;
+
+    PetscCall(AncfGetCounts(a, &steps, NULL, NULL));
+    printf("one step of 0.3 s with at most 3 Newton iterations was taken as %d steps\n", (int)steps);
+    TEST(steps > 1, "the step of 0.3 s was not reduced");
+  }
+  PetscCall(AncfDestroy(&a));
+  PetscCall(BeamCreate(&s, -9.81, "-ancf_ts_type euler", &a)); /* unstable without damping: must end in a named error */
+  {
+    PetscErrorCode ierr = PETSC_SUCCESS;
+
+    PetscCall(PetscPushErrorHandler(TestCatch, NULL));
+    for (int i = 1; i <= 2000 && !ierr; i++) ierr = AncfAdvance(a, 1e-3 * i);
+    PetscCall(PetscPopErrorHandler());
+    TEST(ierr == PETSC_ERR_FP && strstr(test_message, "Beam 0"), "explicit Euler ended with %d '%s'", (int)ierr, test_message);
+  }
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(TestJacobian("-ancf_ts_type alpha2", PETSC_TRUE));
+  PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_strain engineering", PETSC_TRUE));
+  PetscCall(TestJacobian("-ancf_ts_type bdf", PETSC_FALSE));
+  PetscCall(TestTypes());
+  PetscCall(TestContinuation("-ancf_ts_type alpha2"));
+  PetscCall(TestContinuation("-ancf_ts_type bdf"));
+  PetscCall(TestMomentum("-ancf_ts_type alpha2", 1e-4));
+  PetscCall(TestMomentum("-ancf_ts_type alpha2 -ancf_ts_alpha_radius 1", 1e-11));
+  PetscCall(TestMomentum("-ancf_ts_type theta", 1e-11));
+  PetscCall(TestReaction());
+  PetscCall(TestBuoyancy());
+  PetscCall(TestBadInput());
+  PetscCall(TestFailures());
+  PetscCall(PetscFinalize());
+  return test_report();
+}
