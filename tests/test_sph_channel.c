@@ -1,17 +1,17 @@
 /*
   test_sph_channel.c - transient plane Poiseuille and Couette flow against their series solutions.
 
-  Set-up of Morris, Fox, Zhu, J. Comput. Phys. 136 (1997): L = 1e-3 m, nu = 1e-6 m^2/s, rho = 1000 kg/m^3, F = 1e-4 m/s^2 or plate speed
-  V0 = 1.25e-5 m/s. Bound: relative L2 error <= 1 % at 40 markers across, at nu t/L^2 = 0.02, 0.1, 0.5 (Poiseuille) and 0.05, 0.2 (Couette); the
-  scheme is second order in dp at fixed h/dp (lattice-normalised viscosity, linear wall extrapolation): the order between 10 and 40 markers must be at least 1.5.
-  The last Couette time is steady, its linear profile exact up to noise: no order is asked of it.
-  -table prints the errors for both wall treatments.
+  Set-up of Morris, Fox, Zhu, J. Comput. Phys. 136 (1997): L = 1e-3 m, nu = 1e-6 m^2/s, rho = 1000 kg/m^3, F = 1e-4 m/s^2 or plate
+  speed V0 = 1.25e-5 m/s. Bound: relative L2 error <= 1 % at 40 markers across, at nu t/L^2 = 0.02, 0.1, 0.5 (Poiseuille) and
+  0.05, 0.2 (Couette); the scheme is second order in dp at fixed h/dp (lattice-normalised viscosity, linear wall extrapolation):
+  the order between 10 and 40 markers must be at least 1.5. The last Couette time is steady, its linear profile exact up to noise:
+  no order is asked of it. -table prints the errors for both wall treatments.
 */
 #include "sph.h"
 #include "sphfill.h"
 #include "testing.h"
 
-#define L  1e-3
+#define L 1e-3
 #define NU 1e-6
 #define V0 1.25e-5
 #define FX 1e-4
@@ -21,28 +21,30 @@ static double Exact(int couette, double y, double t)
   double u = couette ? V0 * y / L : FX * y * (L - y) / (2.0 * NU);
   for (int n = 1; n < 200; n++) {
     const double k = n * PETSC_PI / L, e = exp(-k * k * NU * t);
-    if (couette) u += 2.0 * V0 / (n * PETSC_PI) * (n % 2 ? -1.0 : 1.0) * sin(k * y) * e;
-    else if (n % 2) u -= 4.0 * FX * L * L / (NU * pow(PETSC_PI * n, 3)) * sin(k * y) * e;
+    if (couette)
+      u += 2.0 * V0 / (n * PETSC_PI) * (n % 2 ? -1.0 : 1.0) * sin(k * y) * e;
+    else if (n % 2)
+      u -= 4.0 * FX * L * L / (NU * pow(PETSC_PI * n, 3)) * sin(k * y) * e;
   }
   return u;
 }
 
 typedef struct {
-  int           couette, across;
-  SphWallType   wall;
-  SphPrecision  precision;
-  double        hratio;
+  int couette, across;
+  SphWallType wall;
+  SphPrecision precision;
+  double hratio;
 } Case;
 
 /* Fluid between y = 0 and L, periodic in x; walls below and above, the upper one moving in the Couette case. */
 static PetscErrorCode Make(const Case *c, Sph *out)
 {
-  const double    dp = L / c->across, width = 8.0 * dp;
+  const double dp = L / c->across, width = 8.0 * dp;
   const PetscReal lo[3] = {0, 0, 0}, hi[3] = {width, L, 0}, f[3] = {c->couette ? 0.0 : FX, 0, 0};
   const PetscBool periodic[3] = {PETSC_TRUE, PETSC_FALSE, PETSC_FALSE};
-  PetscReal      *x, *xw, *vol, *depth, *v, support;
-  PetscInt        n, g;
-  Sph             sph;
+  PetscReal *x, *xw, *vol, *depth, *v, support;
+  PetscInt n, g;
+  Sph sph;
 
   PetscFunctionBegin;
   PetscCall(SphCreate(PETSC_COMM_SELF, &sph));
@@ -66,7 +68,8 @@ static PetscErrorCode Make(const Case *c, Sph *out)
     const PetscBool face[6] = {0, 0, !top, top, 0, 0};
     PetscCall(SphFillWalls(2, dp, lo, hi, face, periodic, support, &n, &xw, &vol, &depth));
     PetscCall(PetscCalloc1(3 * n, &v));
-    if (top && c->couette) for (PetscInt i = 0; i < n; i++) v[3 * i] = V0;
+    if (top && c->couette)
+      for (PetscInt i = 0; i < n; i++) v[3 * i] = V0;
     PetscCall(SphAddBoundary(sph, n, xw, v, vol, depth, &g));
     PetscCall(PetscFree(v));
     PetscCall(PetscFree(xw));
@@ -80,8 +83,8 @@ static PetscErrorCode Make(const Case *c, Sph *out)
 
 static PetscErrorCode L2Error(Sph sph, int couette, double t, double *error)
 {
-  PetscInt   n, nb;
-  double     e2 = 0.0, u2 = 0.0;
+  PetscInt n, nb;
+  double e2 = 0.0, u2 = 0.0;
   PetscReal *x, *v;
 
   PetscFunctionBegin;
@@ -107,7 +110,7 @@ static PetscErrorCode Run(const Case *c, int ntau, const double *tau, double *er
   PetscCall(Make(c, &sph));
   for (int k = 0; k < ntau; k++) {
     const double end = tau[k] * L * L / NU;
-    PetscReal    t, dt;
+    PetscReal t, dt;
     for (;;) {
       PetscCall(SphGetTime(sph, &t, NULL));
       if (t >= end * (1.0 - 1e-12)) break;
@@ -128,8 +131,9 @@ static PetscErrorCode Table(SphWallType wall, SphPrecision precision, double hra
   PetscFunctionBegin;
   for (int couette = 0; couette < 2; couette++) {
     const double *tau = couette ? tau_c : tau_p;
-    double        e[3][3];
-    printf("%s, wall %s, %s, h/dp %g: relative L2 error\n  across", couette ? "Couette" : "Poiseuille", SphWallTypes[wall], SphPrecisions[precision], hratio);
+    double e[3][3];
+    printf("%s, wall %s, %s, h/dp %g: relative L2 error\n  across", couette ? "Couette" : "Poiseuille", SphWallTypes[wall],
+           SphPrecisions[precision], hratio);
     for (int k = 0; k < 3; k++) printf("  tau=%-6g", tau[k]);
     printf("\n");
     for (int r = 0; r < 3; r++) {
@@ -138,11 +142,15 @@ static PetscErrorCode Table(SphWallType wall, SphPrecision precision, double hra
       printf("  %6d  %.3e  %.3e  %.3e\n", c.across, e[r][0], e[r][1], e[r][2]);
       fflush(stdout);
     }
-    printf("  order   %9.2f  %9.2f  %9.2f\n", log2(e[0][0] / e[2][0]) / 2, log2(e[0][1] / e[2][1]) / 2, log2(e[0][2] / e[2][2]) / 2);
+    printf("  order   %9.2f  %9.2f  %9.2f\n", log2(e[0][0] / e[2][0]) / 2, log2(e[0][1] / e[2][1]) / 2,
+           log2(e[0][2] / e[2][2]) / 2);
     if (!check) continue;
     for (int k = 0; k < 3; k++) {
-      TEST(e[2][k] <= 0.01, "%s at tau %g: L2 error %g at 40 across, bound 0.01", couette ? "Couette" : "Poiseuille", tau[k], e[2][k]);
-      if (!(couette && k == 2)) TEST(log2(e[0][k] / e[2][k]) / 2 >= 1.5, "%s at tau %g: order %g, bound 1.5", couette ? "Couette" : "Poiseuille", tau[k], log2(e[0][k] / e[2][k]) / 2);
+      TEST(e[2][k] <= 0.01, "%s at tau %g: L2 error %g at 40 across, bound 0.01", couette ? "Couette" : "Poiseuille", tau[k],
+           e[2][k]);
+      if (!(couette && k == 2))
+        TEST(log2(e[0][k] / e[2][k]) / 2 >= 1.5, "%s at tau %g: order %g, bound 1.5", couette ? "Couette" : "Poiseuille", tau[k],
+             log2(e[0][k] / e[2][k]) / 2);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

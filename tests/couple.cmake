@@ -1,0 +1,2 @@
+frond_test(test_couple_transfer SOURCES test_couple_transfer.c LABELS unit)
+frond_test(test_couple_hydrostatic SOURCES test_couple_hydrostatic.c LABELS validation)
