@@ -257,7 +257,7 @@ static PetscErrorCode add_walls(App *app)
 /* How many markers each surface has. */
 static PetscErrorCode count_surfaces(App *app)
 {
-  PetscInt  n, group, *groups;
+  PetscInt n, group, *groups;
   SphFields f;
 
   PetscFunctionBegin;

@@ -103,6 +103,7 @@ PetscErrorCode AppHelp(void)
   PetscCall(rigid_options());
   PetscCall(couple_options());
   PetscCall(ancf_options());
+  PetscCall(PetscOptionsClearValue(NULL, "-help")); /* else PetscFinalize() adds to it */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
