@@ -61,8 +61,8 @@ struct _p_Ancf {
 extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 
 /* Gauss points per element: see docs/beams.md for the evidence. */
-#define ANCF_DEFAULT_AXIAL 5
-#define ANCF_DEFAULT_BENDING 4
+#define ANCF_DEFAULT_AXIAL 3
+#define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
 
 #if defined(PETSC_UNLIMITED)
