@@ -22,6 +22,8 @@ set(FROND_PC_CFLAGS "")
 foreach(dir ${MPI_C_INCLUDE_DIRS})
   string(APPEND FROND_PC_CFLAGS " -I${dir}")
 endforeach()
+# Relative to the file itself: cmake --install --prefix may choose another place.
+file(RELATIVE_PATH FROND_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 list(JOIN MPI_C_LIBRARIES " " FROND_PC_LIBS)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/frond.pc.in ${PROJECT_BINARY_DIR}/frond.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/frond.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
