@@ -277,6 +277,86 @@ static PetscErrorCode TestBuoyancy(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A free beam under a uniform load that grows linearly: p = integral of the load, which a method of order 2 integrates exactly.
+ */
+static PetscErrorCode TestLinearLoads(const char options[])
+{
+  AncfBeamSpec s;
+  Ancf a;
+  PetscReal *Q, p[3], l;
+  const PetscReal dt = 1e-3, q0 = 3, q1 = 50; /* N/m */
+  PetscInt nnodes;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(3, &s));
+  s.end0 = ANCF_END_FREE;
+  PetscCall(BeamCreate(&s, 0, options, &a));
+  PetscCall(AncfGetBeam(a, 0, NULL, NULL, &l));
+  PetscCall(AncfGetNumNodes(a, &nnodes));
+  for (PetscInt end = 0; end < 2; end++) {
+    PetscReal q = end ? q1 : q0;
+
+    if (end)
+      PetscCall(AncfGetLoadsEnd(a, &Q));
+    else
+      PetscCall(AncfGetLoads(a, &Q));
+    for (PetscInt j = 0; j < nnodes; j++) Q[6 * j + 1] = q * l * (j == 0 || j == nnodes - 1 ? 0.5 : 1);
+    Q[4] = q * l * l / 12; /* Eq. 24: the gradients of the inner nodes cancel */
+    Q[6 * nnodes - 2] = -q * l * l / 12;
+  }
+  PetscCall(AncfAdvance(a, dt));
+  PetscCall(AncfGetMomentum(a, p, NULL));
+  TEST_REL(p[1], 0.5 * (q0 + q1) * dt, 1e-10, options);
+  PetscCall(AncfAdvance(a, 2 * dt)); /* constant afterwards */
+  PetscCall(AncfGetMomentum(a, p, NULL));
+  TEST_REL(p[1], 0.5 * (q0 + q1) * dt + q1 * dt, 1e-10, options);
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Going back and repeating, and continuing in another object from a checkpoint, gives the same motion up to Newton's tolerance.
+ */
+static PetscErrorCode TestRestore(const char options[])
+{
+  AncfBeamSpec s;
+  Ancf a, b;
+  const PetscReal dt = 2e-3, *e, *v, *A;
+  PetscReal *Q, first[3], again[3], other[3], t;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &s));
+  PetscCall(BeamCreate(&s, -9.81, options, &a));
+  PetscCall(BeamCreate(&s, -9.81, options, &b));
+  for (int i = 1; i <= 100; i++) PetscCall(AncfAdvance(a, i * dt));
+  PetscCall(AncfSaveState(a));
+  PetscCall(AncfGetState(a, &t, &e, &v, NULL));
+  PetscCall(AncfSetState(b, t, e, v));
+  PetscCall(AncfGetHistory(a, &A));
+  PetscCall(AncfSetHistory(b, A));
+  for (int i = 101; i <= 110; i++) PetscCall(AncfAdvance(a, i * dt));
+  PetscCall(PetscArraycpy(first, e + 24, 3));
+  PetscCall(AncfRestoreState(a));
+  PetscCall(AncfGetLoads(a, &Q));
+  Q[26] = 100;
+  for (int i = 101; i <= 103; i++) PetscCall(AncfAdvance(a, i * dt));
+  PetscCall(AncfRestoreState(a));
+  PetscCall(AncfGetState(a, &t, NULL, NULL, NULL));
+  TEST_NEAR(t, 100 * dt, 0, "restored time");
+  PetscCall(AncfZeroLoads(a));
+  for (int i = 101; i <= 110; i++) PetscCall(AncfAdvance(a, i * dt));
+  PetscCall(PetscArraycpy(again, e + 24, 3));
+  for (int i = 101; i <= 110; i++) PetscCall(AncfAdvance(b, i * dt));
+  PetscCall(AncfGetState(b, NULL, &e, NULL, NULL));
+  PetscCall(PetscArraycpy(other, e + 24, 3));
+  printf("%-40s repeated: %.1e m, from a checkpoint: %.1e m\n", options, PetscAbsReal(first[2] - again[2]),
+         PetscAbsReal(first[2] - other[2]));
+  TEST_NEAR(first[2], again[2], 1e-9, options);
+  TEST_NEAR(first[2], other[2], 1e-9, options);
+  PetscCall(AncfDestroy(&a));
+  PetscCall(AncfDestroy(&b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBad(AncfBeamSpec s)
 {
   Ancf a;
@@ -411,6 +491,14 @@ int main(int argc, char **argv)
   PetscCall(TestMomentum("-ancf_ts_type theta", 1e-11));
   PetscCall(TestReaction());
   PetscCall(TestBuoyancy());
+  PetscCall(TestLinearLoads("-ancf_ts_alpha_radius 1"));
+  PetscCall(TestLinearLoads("-ancf_ts_alpha_radius 1 -ancf_substeps 3"));
+  PetscCall(TestLinearLoads("-ancf_ts_type theta"));
+  PetscCall(TestLinearLoads("-ancf_ts_type rk -ancf_substeps 2"));
+  PetscCall(TestRestore("-ancf_ts_type alpha2"));
+  PetscCall(TestRestore("-ancf_ts_type alpha2 -ancf_ts_alpha_radius 1"));
+  PetscCall(TestRestore("-ancf_ts_type theta"));
+  PetscCall(TestRestore("-ancf_ts_type rk -ancf_substeps 4"));
   PetscCall(TestBadInput());
   PetscCall(TestFailures());
   PetscCall(PetscFinalize());

@@ -388,6 +388,8 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(AncfTSDestroy(a));
   PetscCall(PetscFree6(a->e, a->v, a->a, a->load, a->weight, a->rest));
   PetscCall(PetscFree2(a->fixed, a->mass));
+  PetscCall(PetscFree(a->loadend));
+  PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));
   PetscCall(PetscFree(a->beams));
   PetscCall(PetscFree(a->prefix));
@@ -434,18 +436,6 @@ PetscErrorCode AncfGetBeam(Ancf ancf, PetscInt beam, AncfBeamSpec *spec, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfGetState(Ancf ancf, PetscReal *t, const PetscReal **e, const PetscReal **edot, const PetscReal **eddot)
-{
-  PetscFunctionBegin;
-  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetState: call AncfSetUp() first");
-  if (eddot) PetscCall(AncfComputeAcceleration(ancf));
-  if (t) *t = ancf->t;
-  if (e) *e = ancf->e;
-  if (edot) *edot = ancf->v;
-  if (eddot) *eddot = ancf->a;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The beam of a node. */
 PetscInt AncfFindBeam(Ancf ancf, PetscInt node)
 {
@@ -462,68 +452,6 @@ PetscInt AncfFindBeam(Ancf ancf, PetscInt node)
   return lo;
 }
 
-/* PETSC_ERR_FP with beam, node and time when an array of nodes x 6 holds a NaN or an infinity. */
-PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
-    PetscInt b;
-
-    if (PetscLikely(!PetscIsInfOrNanReal(x[i]))) continue;
-    b = AncfFindBeam(ancf, i / 6);
-    SETERRQ(ancf->comm, PETSC_ERR_FP,
-            "Beam %" PetscInt_FMT ", node %" PetscInt_FMT ": %s coordinate %" PetscInt_FMT " is %g at t = %g s", b,
-            i / 6 - ancf->beams[b].node, what, i % 6, (double)x[i], (double)t);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*
-  AncfSetState - replaces time, coordinates and velocities (nodes x 6 each); multistep history is discarded.
-  Fixed coordinates keep their new values from now on; their velocities must be zero.
-*/
-PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const PetscReal *edot)
-{
-  PetscFunctionBegin;
-  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetState: call AncfSetUp() first");
-  PetscCheck(!PetscIsInfOrNanReal(t), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "AncfSetState: time %g must be finite", (double)t);
-  PetscCall(AncfCheckFinite(ancf, "position", e, t));
-  PetscCall(AncfCheckFinite(ancf, "velocity", edot, t));
-  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
-    PetscInt b = AncfFindBeam(ancf, i / 6);
-
-    PetscCheck(edot[i] == 0 || !(ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)), ancf->comm,
-               PETSC_ERR_ARG_INCOMP,
-               "AncfSetState: beam %" PetscInt_FMT ", node %" PetscInt_FMT ": velocity %g of a fixed coordinate must be zero", b,
-               i / 6 - ancf->beams[b].node, (double)edot[i]);
-  }
-  if (e != ancf->e) PetscCall(PetscArraycpy(ancf->e, e, 6 * ancf->nnodes));
-  if (edot != ancf->v) PetscCall(PetscArraycpy(ancf->v, edot, 6 * ancf->nnodes));
-  PetscCall(PetscArraycpy(ancf->rest, e, 6 * ancf->nnodes));
-  ancf->t = t;
-  ancf->avalid = PETSC_FALSE;
-  PetscCall(AncfTSPush(ancf));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode AncfZeroLoads(Ancf ancf)
-{
-  PetscFunctionBegin;
-  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfZeroLoads: call AncfSetUp() first");
-  PetscCall(PetscArrayzero(ancf->load, 6 * ancf->nnodes));
-  ancf->avalid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q)
-{
-  PetscFunctionBegin;
-  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetLoads: call AncfSetUp() first");
-  *Q = ancf->load;
-  ancf->avalid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear)
 {
   PetscInt s = 0, n = 0, l = 0;
@@ -535,25 +463,5 @@ PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, Petsc
   if (steps) *steps = s - ancf->uncounted[0];
   if (newton) *newton = n - ancf->uncounted[1];
   if (linear) *linear = l - ancf->uncounted[2];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*
-  AncfAdvance - integrates to time t (> the current one) under the present loads.
-
-  Errors: PETSC_ERR_FP for non-finite loads or results, PETSC_ERR_NOT_CONVERGED when Newton's method fails even after the
-  step was reduced. After an error the state is that before the call.
-*/
-PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t)
-{
-  PetscFunctionBegin;
-  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfAdvance: call AncfSetUp() first");
-  PetscCheck(t > ancf->t && !PetscIsInfOrNanReal(t), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "AncfAdvance: time %g s must be finite and after the current time %g s", (double)t, (double)ancf->t);
-  PetscCall(AncfCheckFinite(ancf, "load", ancf->load, ancf->t));
-  PetscCall(PetscLogEventBegin(ANCF_Advance, 0, 0, 0, 0));
-  PetscCall(AncfTSSolve(ancf, t));
-  PetscCall(PetscLogEventEnd(ANCF_Advance, 0, 0, 0, 0));
-  ancf->avalid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,9 +59,21 @@ FROND_EXTERN PetscErrorCode AncfGetState(Ancf ancf, PetscReal *t, const PetscRea
                                          const PetscReal **eddot);
 FROND_EXTERN PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const PetscReal *edot);
 
-/* Generalised applied forces Q^a (nodes x 6), held constant over the next AncfAdvance(). */
+/* Generalised applied forces Q^a (nodes x 6), held constant over the next AncfAdvance(). Writable; ask again before each step. */
 FROND_EXTERN PetscErrorCode AncfZeroLoads(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
+/* Loads at the end of the next AncfAdvance(): Q^a is then linear in time from AncfGetLoads() to these in that
+   call, and constant at these afterwards. Returned as a copy of the loads at the start. */
+FROND_EXTERN PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q);
+
+/* Iterated coupling: AncfRestoreState() goes back to the time of AncfSaveState() as often as wanted, with the history of the
+   integrator for one-step methods and alpha2 (a multistep method restarts). Loads are left alone. */
+FROND_EXTERN PetscErrorCode AncfSaveState(Ancf ancf);
+FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
+/* Checkpoints: the acceleration (nodes x 6) that alpha2 carries from step to step, to be set after AncfSetState(); *A is NULL
+   for other types. Without it alpha2 starts from the acceleration of the equations of motion. */
+FROND_EXTERN PetscErrorCode AncfGetHistory(Ancf ancf, const PetscReal **A);
+FROND_EXTERN PetscErrorCode AncfSetHistory(Ancf ancf, const PetscReal *A);
 
 /* Integrate from the current time to t with `substeps` TS steps (or adaptively). */
 FROND_EXTERN PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t);

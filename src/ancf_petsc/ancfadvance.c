@@ -54,19 +54,6 @@ PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *si
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfRestore(Ancf ancf, PetscReal t)
-{
-  const PetscInt n = 6 * ancf->nnodes;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(ancf->e, ancf->backup, n));
-  PetscCall(PetscArraycpy(ancf->v, ancf->backup + n, n));
-  ancf->t = t;
-  ancf->avalid = PETSC_FALSE;
-  PetscCall(AncfTSPush(ancf));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Restores the state at t0 and reports why TS stopped. */
 static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason)
 {
@@ -81,7 +68,7 @@ static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetConvergedReason(snes, &why));
   PetscCall(AncfWorstNode(ancf, snes, &node, &size));
-  PetscCall(AncfRestore(ancf, t0));
+  PetscCall(AncfStateLoad(ancf, t0, ancf->backup));
   PetscCheck(node >= 0, ancf->comm, PETSC_ERR_NOT_CONVERGED, "Beam step at t = %g s failed: %s", (double)t,
              TSConvergedReasons[reason]);
   b = AncfFindBeam(ancf, node);
@@ -92,9 +79,8 @@ static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason
           ancf->beams[b].spec.elements + 1);
 }
 
-PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
+static PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
 {
-  const PetscInt n = 6 * ancf->nnodes;
   const PetscReal t0 = ancf->t;
   PetscReal dt = (t - t0) / (PetscReal)ancf->substeps;
   PetscBool fixedstep;
@@ -103,18 +89,22 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(ancf->backup, ancf->e, n));
-  PetscCall(PetscArraycpy(ancf->backup + n, ancf->v, n));
+  ancf->loadtime[0] = t0;
+  ancf->loadtime[1] = t;
+  AncfSetLoadTime(ancf, t0);
   PetscCall(TSGetAdapt(ancf->ts, &adapt));
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
   if (!fixedstep && ancf->step > 0) dt = PetscMin(ancf->step, t - t0);
   PetscCall(AncfSetNewtonFloor(ancf, dt));
   if (ancf->restart && ancf->form == ANCF_FORM_SECOND) {
-    PetscCall(AncfComputeAcceleration(ancf));
-    PetscCall(PetscArraycpy(ancf->history, ancf->a, n));
+    if (!ancf->given) {
+      PetscCall(AncfComputeAcceleration(ancf));
+      PetscCall(PetscArraycpy(ancf->history, ancf->a, 6 * ancf->nnodes));
+    }
     PetscCall(AncfAlphaStart(ancf, dt));
   }
-  ancf->restart = PETSC_FALSE;
+  ancf->restart = ancf->given = PETSC_FALSE;
+  PetscCall(AncfStateStore(ancf, ancf->backup));
   PetscCall(TSSetTimeStep(ancf->ts, dt));
   if (ancf->form == ANCF_FORM_SYMPLECTIC) { /* sums its stages' times and matches no final time: count steps instead */
     PetscInt steps;
@@ -132,8 +122,32 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(AncfTSPull(ancf));
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
-  if (ierr) PetscCall(AncfRestore(ancf, t0));
+  if (ierr) PetscCall(AncfStateLoad(ancf, t0, ancf->backup));
   PetscCall(ierr);
   ancf->t = t;
+  if (ancf->linear) PetscCall(PetscArraycpy(ancf->load, ancf->loadend, 6 * ancf->nnodes));
+  ancf->linear = PETSC_FALSE;
+  AncfSetLoadTime(ancf, t);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  AncfAdvance - integrates to time t (> the current one) under the present loads.
+
+  Errors: PETSC_ERR_FP for non-finite loads or results, PETSC_ERR_NOT_CONVERGED when Newton's method fails even after the
+  step was reduced. After an error the state is that before the call.
+*/
+PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfAdvance: call AncfSetUp() first");
+  PetscCheck(t > ancf->t && !PetscIsInfOrNanReal(t), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "AncfAdvance: time %g s must be finite and after the current time %g s", (double)t, (double)ancf->t);
+  PetscCall(AncfCheckFinite(ancf, "load", ancf->load, ancf->t));
+  if (ancf->linear) PetscCall(AncfCheckFinite(ancf, "load", ancf->loadend, t));
+  PetscCall(PetscLogEventBegin(ANCF_Advance, 0, 0, 0, 0));
+  PetscCall(AncfTSSolve(ancf, t));
+  PetscCall(PetscLogEventEnd(ANCF_Advance, 0, 0, 0, 0));
+  ancf->avalid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,20 +42,25 @@ struct _p_Ancf {
   PetscReal t;
   PetscReal *e, *v, *a; /* state, nodes x 6 */
   PetscBool avalid;
-  PetscReal loadscale;      /* of Q^a and Q^g; 1 but for the load steps of AncfSolveStatic() */
-  PetscReal *load, *weight; /* Q^a, Q^g */
-  PetscReal *rest;          /* values of the eliminated coordinates */
-  unsigned char *fixed;     /* per node, ANCF_FIX_* */
-  PetscReal *mass;          /* banded Cholesky factor, 2 rows per node x 4 */
+  PetscReal loadscale;            /* of Q^a and Q^g; 1 but for the load steps of AncfSolveStatic() */
+  PetscReal *load, *weight;       /* Q^a, Q^g */
+  PetscReal *loadend;             /* Q^a at loadtime[1], NULL until asked for */
+  PetscBool linear;               /* Q^a goes from load to loadend between the two times, s */
+  PetscReal loadtime[2], loadnow; /* loadnow: where the residual is evaluated, 0..1 */
+  PetscReal *rest;                /* values of the eliminated coordinates */
+  unsigned char *fixed;           /* per node, ANCF_FIX_* */
+  PetscReal *mass;                /* banded Cholesky factor, 2 rows per node x 4 */
 
   TS ts;
   Vec U, V;
   Mat J;
-  PetscReal *backup;          /* state at the start of AncfAdvance(), 2 x nodes x 6 */
-  PetscReal *history, *vprev; /* acceleration carried by TSALPHA2, velocity before the step */
-  PetscBool restart, priming; /* TS must start afresh; AncfAlphaStart() is at work */
-  PetscInt uncounted[3];      /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
-  PetscReal step;             /* what an adaptive TS wants next, s; 0: unknown */
+  PetscReal *backup;                      /* e, v, history at the start of AncfAdvance(), 3 x nodes x 6 */
+  PetscReal *saved, savedtime, savedstep; /* the same for AncfSaveState(), NULL before */
+  PetscReal *history, *vprev;             /* acceleration carried by TSALPHA2, velocity before the step */
+  PetscBool given;                        /* history was set by the user */
+  PetscBool restart, priming;             /* TS must start afresh; AncfAlphaStart() is at work */
+  PetscInt uncounted[3]; /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
+  PetscReal step;        /* what an adaptive TS wants next, s; 0: unknown */
 };
 
 extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
@@ -71,10 +76,17 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
   #define ANCF_UNLIMITED (-1)
 #endif
 
+/* ancfstate.c */
+extern PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t);
+/* Copies (e, v, history) to and from an array of 3 x nodes x 6; Load makes TS restart from it at time t. */
+extern PetscErrorCode AncfStateStore(Ancf ancf, PetscReal *x);
+extern PetscErrorCode AncfStateLoad(Ancf ancf, PetscReal t, const PetscReal *x);
+/* Loads at time t of the step. */
+extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
+
 /* ancf.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
-extern PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t);
 
 /* ancfts.c: Push and Pull copy the state into and out of the vectors of TS; Push makes TS restart. */
 extern PetscErrorCode AncfTSCreate(Ancf ancf);
@@ -97,7 +109,6 @@ extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscRea
 
 /* ancfadvance.c */
 extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
-extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
 
 /* ancfalpha.c */
 extern PetscErrorCode AncfAlphaSetUp(Ancf ancf);

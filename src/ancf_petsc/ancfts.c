@@ -84,6 +84,10 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
   PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->weight[6 * j + c] + ancf->load[6 * j + c]);
+  if (ancf->loadnow != 0)
+    for (PetscInt j = 0; j < ancf->nnodes; j++)
+      for (PetscInt c = 0; c < 6; c++)
+        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
   for (PetscInt k = 0; k < ancf->nbatches; k++) {
     const AncfBatch *b = &ancf->batches[k];
     AncfSection s = BatchSection(b);
@@ -231,7 +235,7 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
 
   PetscFunctionBegin;
   (void)ts;
-  (void)t;
+  AncfSetLoadTime((Ancf)ctx, t);
   (void)V;
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(VecGetArrayRead(A, &a));
@@ -277,7 +281,7 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
 
   PetscFunctionBegin;
   (void)ts;
-  (void)t;
+  AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(Ydot, &yd));
   PetscCall(VecGetArrayWrite(F, &f));
@@ -325,7 +329,7 @@ static PetscErrorCode AncfRHSFunction(TS ts, PetscReal t, Vec Y, Vec G, void *ct
 
   PetscFunctionBegin;
   (void)ts;
-  (void)t;
+  AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayWrite(G, &g));
   PetscCall(AncfExplicitAcceleration(ancf, y, 12, g + 6, 12));
@@ -355,7 +359,7 @@ static PetscErrorCode AncfSymplecticMomentum(TS ts, PetscReal t, Vec X, Vec G, v
 
   PetscFunctionBegin;
   (void)ts;
-  (void)t;
+  AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(G, &g));
   PetscCall(AncfExplicitAcceleration(ancf, x, 6, g, 6));
@@ -526,7 +530,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   SNES snes;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * n, &ancf->backup));
+  PetscCall(PetscMalloc1(3 * n, &ancf->backup));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
   if (ancf->form == ANCF_FORM_SECOND) {
@@ -578,6 +582,7 @@ PetscErrorCode AncfTSPush(Ancf ancf)
   PetscCall(TSSetTime(ancf->ts, ancf->t));
   PetscCall(TSRestartStep(ancf->ts));
   ancf->restart = PETSC_TRUE;
+  ancf->given = PETSC_FALSE;
   if (ancf->form == ANCF_FORM_SECOND)
     PetscCall(AncfTSTouch(ancf));
   else {
