@@ -29,6 +29,7 @@ PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid)
   PetscCall(PetscNew(rigid));
   (*rigid)->comm = comm;
   (*rigid)->dim = 3;
+  (*rigid)->substeps = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,7 +119,7 @@ PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho)
 PetscErrorCode RigidSetFromOptions(Rigid rigid)
 {
   PetscReal g[3] = {rigid->g[0], rigid->g[1], rigid->g[2]}, rho = rigid->rhofluid;
-  PetscInt n = 3, dim = rigid->dim;
+  PetscInt n = 3, dim = rigid->dim, substeps = rigid->substeps;
   PetscBool set;
 
   PetscFunctionBegin;
@@ -132,7 +133,19 @@ PetscErrorCode RigidSetFromOptions(Rigid rigid)
                              "Density of displaced fluid that reduces the weight, kg/m^3 (0: full weight)",
                              "RigidSetFluidDensity", rho, &rho, NULL));
   PetscCall(RigidSetFluidDensity(rigid, rho));
+  PetscCall(PetscOptionsInt("-rigid_substeps", "Steps of the rigid bodies in one step of the fluid", "RigidSetSubsteps", substeps,
+                            &substeps, NULL));
+  PetscCall(RigidSetSubsteps(rigid, substeps));
   PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Free bodies need one step only; joints with stiff springs or fast mechanisms may need more. */
+PetscErrorCode RigidSetSubsteps(Rigid rigid, PetscInt n)
+{
+  PetscFunctionBegin;
+  PetscCheck(n >= 1, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE, "-rigid_substeps %" PetscInt_FMT ": must be >= 1", n);
+  rigid->substeps = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,6 +190,11 @@ PetscErrorCode RigidSetUp(Rigid rigid)
   if (rigid->setup) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < rigid->n; i++) PetscCall(BodySetUp(rigid, i));
   rigid->setup = PETSC_TRUE;
+  for (PetscInt j = 0; j < rigid->njoints; j++) PetscCall(RigidJointSetUp(rigid, j));
+  if (rigid->njoints) {
+    PetscCall(RigidSystemCreate(rigid));
+    PetscCall(RigidSystemProjectVelocity(rigid));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,7 +244,14 @@ PetscErrorCode RigidView(Rigid rigid, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "gravity %g %g %g m/s^2, fluid density %g kg/m^3%s\n", (double)rigid->g[0],
                                    (double)rigid->g[1], (double)rigid->g[2], (double)rigid->rhofluid,
                                    rigid->rhofluid > 0. ? "" : " (full weight)"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT "\n", rigid->substeps));
   for (PetscInt i = 0; i < rigid->n; i++) PetscCall(BodyView(rigid, i, viewer));
+  for (PetscInt j = 0; j < rigid->njoints; j++) {
+    const RigidJointSpec *s = &rigid->joint[j].spec;
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer, "joint %" PetscInt_FMT ": %s, bodies %" PetscInt_FMT " and %" PetscInt_FMT ", stiffness %g, damping %g%s\n", j,
+        RigidJointName(s->type), s->a, s->b, (double)s->stiffness, (double)s->damping, rigid->joint[j].broken ? ", broken" : ""));
+  }
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -236,7 +261,9 @@ PetscErrorCode RigidDestroy(Rigid *rigid)
   PetscFunctionBegin;
   if (!*rigid) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < (*rigid)->n; i++) PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
+  PetscCall(RigidSystemDestroy(*rigid));
   PetscCall(PetscFree((*rigid)->prefix));
+  PetscCall(PetscFree((*rigid)->joint));
   PetscCall(PetscFree((*rigid)->body));
   PetscCall(PetscFree(*rigid));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -335,31 +362,57 @@ static void BodyPointers(RigidBody *b, PetscReal *p[], int n[])
   for (int k = 0; k < 9; k++) n[k] = k == 1 ? 4 : 3;
 }
 
-/* state: bodies x RIGID_PACK_SIZE; the time is not in it, see RigidGetTime(). */
+/* One joint's part, after the bodies. */
+static void JointPointers(RigidJoint *j, PetscReal *p[4])
+{
+  for (int k = 0; k < 3; k++) p[k] = &j->rest[k];
+  p[3] = &j->angle;
+}
+
+PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = rigid->n * RIGID_PACK_SIZE + rigid->njoints * RIGID_JOINT_PACK_SIZE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* state: RigidGetPackSize() reals; the time is not in it, see RigidGetTime(). */
 PetscErrorCode RigidPack(Rigid rigid, PetscReal state[])
 {
+  PetscReal *p[9];
+  int n[9];
+
   PetscFunctionBegin;
   PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
   for (PetscInt i = 0; i < rigid->n; i++) {
-    PetscReal *p[9];
-    int n[9];
     BodyPointers(&rigid->body[i], p, n);
     for (int k = 0; k < 9; k++)
       for (int c = 0; c < n[k]; c++) *state++ = p[k][c];
+  }
+  for (PetscInt i = 0; i < rigid->njoints; i++) {
+    JointPointers(&rigid->joint[i], p);
+    for (int k = 0; k < 4; k++) *state++ = *p[k];
+    *state++ = rigid->joint[i].broken ? 1. : 0.;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[])
 {
+  PetscReal *p[9];
+  int n[9];
+
   PetscFunctionBegin;
   PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
   for (PetscInt i = 0; i < rigid->n; i++) {
-    PetscReal *p[9];
-    int n[9];
     BodyPointers(&rigid->body[i], p, n);
     for (int k = 0; k < 9; k++)
       for (int c = 0; c < n[k]; c++) p[k][c] = *state++;
+  }
+  for (PetscInt i = 0; i < rigid->njoints; i++) {
+    JointPointers(&rigid->joint[i], p);
+    for (int k = 0; k < 4; k++) *p[k] = *state++;
+    rigid->joint[i].broken = *state++ != 0. ? PETSC_TRUE : PETSC_FALSE;
   }
   rigid->advanced = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -405,7 +458,7 @@ PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const PetscReal F[3], co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One step of the integrator from the present time to t (s), see rigidstep.c; t must not lie in the past. */
+/* From the present time to t (s) in -rigid_substeps steps, see rigidstep.c and rigidconstraint.c; t must not lie in the past. */
 PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
 {
   const PetscReal dt = t - rigid->t;
@@ -415,7 +468,15 @@ PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
   PetscCheck(dt >= 0. && !PetscIsInfOrNanReal(t), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "RigidAdvance() to t = %g s: must be >= the present time %g s", (double)t, (double)rigid->t);
   PetscCall(PetscLogEventBegin(RIGID_Advance, 0, 0, 0, 0));
-  for (PetscInt i = 0; i < rigid->n; i++) PetscCall(RigidBodyAdvance(rigid, i, dt));
+  for (PetscInt s = 0; s < rigid->substeps; s++) {
+    const PetscReal h = dt / (PetscReal)rigid->substeps;
+    for (PetscInt i = 0; i < rigid->n; i++) {
+      PetscBool jointed;
+      PetscCall(RigidSystemHasBody(rigid, i, &jointed));
+      if (!jointed) PetscCall(RigidBodyAdvance(rigid, i, h));
+    }
+    if (rigid->system) PetscCall(RigidSystemAdvance(rigid, h));
+  }
   rigid->t = t;
   rigid->advanced = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(RIGID_Advance, 0, 0, 0, 0));

@@ -86,8 +86,10 @@ FROND_EXTERN PetscErrorCode RigidSetState(Rigid rigid, PetscInt body, const Pets
 /* Time of the state, s (0 at the start). */
 FROND_EXTERN PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t);
 FROND_EXTERN PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t);
-/* The integrator's own variables, RIGID_PACK_SIZE reals a body, for restarts that go on bit for bit. */
-#define RIGID_PACK_SIZE 28
+/* The integrator's own variables, RigidGetPackSize() reals, for restarts that go on bit for bit. */
+#define RIGID_PACK_SIZE 28      /* for each body */
+#define RIGID_JOINT_PACK_SIZE 5 /* for each joint, after the bodies */
+FROND_EXTERN PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n);
 FROND_EXTERN PetscErrorCode RigidPack(Rigid rigid, PetscReal state[]);
 FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
 /* Linear and angular acceleration (space frame) from the last applied wrench, m/s^2, rad/s^2. */
@@ -101,6 +103,58 @@ FROND_EXTERN PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const Petsc
 FROND_EXTERN PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t);
 FROND_EXTERN PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, PetscReal *potential);
 FROND_EXTERN PetscErrorCode RigidGetMomentum(Rigid rigid, PetscReal p[3], PetscReal L[3]);
+
+/*
+  Joints, between two bodies or a body and the ground. Positions and directions are those of the initial placement, space
+  frame. The constraints are kept to round-off, positions and velocities alike, see rigidconstraint.c.
+    ball    point of a = point of b
+    hinge   ball, and only a turn about axis is left; stiffness, damping (N m/rad, N m s/rad) act on its angle
+    slider  only a shift along axis is left; stiffness, damping (N/m, N s/m) act on it
+    spring  no constraint: spring and damper between point of a and pointb of b; rest length `rest`
+    linear  no constraint: spring and damper on the shift of point of a along axis, which is fixed to b
+    bend    ball with rotational springs: stiffness, damping about both directions normal to axis, torsion, torsiondamping about
+  it
+*/
+typedef enum {
+  RIGID_JOINT_BALL,
+  RIGID_JOINT_HINGE,
+  RIGID_JOINT_SLIDER,
+  RIGID_JOINT_SPRING,
+  RIGID_JOINT_LINEAR,
+  RIGID_JOINT_BEND
+} RigidJointType;
+#define RIGID_GROUND (-1)
+
+typedef struct {
+  RigidJointType type;
+  PetscInt a, b;            /* bodies, or RIGID_GROUND for one of them */
+  PetscReal point[3];       /* m */
+  PetscReal pointb[3];      /* spring: its end on b, m */
+  PetscReal axis[3];        /* hinge, slider, linear, bend: any length > 0 */
+  PetscReal stiffness;      /* >= 0 */
+  PetscReal damping;        /* >= 0 */
+  PetscReal torsion;        /* bend: N m/rad, >= 0 */
+  PetscReal torsiondamping; /* bend: N m s/rad, >= 0 */
+  PetscReal
+      rest; /* spring: length without force, m, PETSC_DECIDE: the initial one; hinge, slider, linear: rad or m from the start */
+  PetscReal yield;   /* hinge, bend: moment at which a hinge yields (each direction by itself), N m; default: never */
+  PetscReal rupture; /* hinge, bend: angle at which the joint breaks for good, rad; default: never */
+} RigidJointSpec;
+
+FROND_EXTERN PetscErrorCode RigidJointSpecInit(RigidJointSpec *spec);
+FROND_EXTERN PetscErrorCode RigidAddJoint(Rigid rigid, const RigidJointSpec *spec, PetscInt *joint);
+FROND_EXTERN PetscErrorCode RigidGetNumJoints(Rigid rigid, PetscInt *n);
+/* Force (N) and moment about the joint's point (N m) on body a over the last step, space frame; each may be NULL. */
+FROND_EXTERN PetscErrorCode RigidGetJointForce(Rigid rigid, PetscInt joint, PetscReal F[3], PetscReal M[3]);
+/* Free coordinate: hinge angle (rad), slider or linear shift, spring elongation (m), largest bend angle (rad); broken: ruptured.
+ */
+FROND_EXTERN PetscErrorCode RigidGetJointState(Rigid rigid, PetscInt joint, PetscReal *coordinate, PetscBool *broken);
+/* Largest violation of the constraints, of position (m, rad) and of velocity (m/s, rad/s), now. */
+FROND_EXTERN PetscErrorCode RigidGetJointError(Rigid rigid, PetscReal *position, PetscReal *velocity);
+/* Energy in the springs of the joints, J. */
+FROND_EXTERN PetscErrorCode RigidGetJointEnergy(Rigid rigid, PetscReal *elastic);
+/* Steps of the integrator in one RigidAdvance(), >= 1. */
+FROND_EXTERN PetscErrorCode RigidSetSubsteps(Rigid rigid, PetscInt n);
 
 /* Signed distance (m) from a point in the body frame to the surface, negative inside; exact for every shape. */
 FROND_EXTERN PetscReal RigidShapeDistance(const RigidBodySpec *spec, const PetscReal xbody[3]);

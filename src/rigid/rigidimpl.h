@@ -17,6 +17,30 @@ typedef struct {
   PetscReal Fused[3], Tused[3]; /* wrench of the last step, gravity not included */
 } RigidBody;
 
+#define RIGID_MAX_ROWS 7
+
+/* One scalar of a joint: a constraint g = 0 (hard) or a spring and damper on g. Jacobian: dg/dt = Ja.(Va, wa) + Jb.(Vb, wb). */
+typedef struct {
+  PetscReal g, Ja[6], Jb[6];
+} RigidRow;
+
+typedef struct {
+  RigidJointSpec spec;
+  PetscReal ra[3], rb[3];         /* anchors, body frames, m */
+  PetscReal ua[3], ub[3];         /* axis in the frames of a and b */
+  PetscReal ta[2][3], tb[2][3];   /* normals of the axis: the axes a t, b t and u are a right-handed triad at the start */
+  PetscReal qrel[4];              /* initial q_b^-1 q_a */
+  PetscInt nrows, first;          /* rows of the system */
+  PetscBool hard[RIGID_MAX_ROWS]; /* else: */
+  PetscReal k[RIGID_MAX_ROWS], c[RIGID_MAX_ROWS];
+  PetscReal rest[3];               /* of the soft rows, plastic part included */
+  PetscReal angle;                 /* hinge: last angle, to count turns */
+  PetscReal force[RIGID_MAX_ROWS]; /* multipliers of the last step */
+  PetscBool broken;
+} RigidJoint;
+
+typedef struct _p_RigidSystem *RigidSystem; /* rigidconstraint.c */
+
 struct _p_Rigid {
   MPI_Comm comm;
   char *prefix;
@@ -26,6 +50,10 @@ struct _p_Rigid {
   PetscReal g[3];     /* m/s^2 */
   PetscReal rhofluid; /* kg/m^3; > 0: gravity is reduced by the displaced fluid */
   PetscReal t;        /* s */
+  PetscInt substeps;
+  PetscInt njoints, njointalloc;
+  RigidJoint *joint;
+  RigidSystem system; /* NULL without joints */
   PetscBool setup, advanced;
 };
 
@@ -49,7 +77,20 @@ extern PetscErrorCode RigidMarkersAdd(RigidMarkers *m, PetscReal x, PetscReal y,
 extern PetscErrorCode RigidPackMarkers(RigidMarkers *m, const RigidBodySpec *spec, PetscInt dim, PetscReal dp,
                                        PetscReal depthmax);
 
+/* rigidjoint.c */
+extern const char *RigidJointName(RigidJointType type);
+extern PetscErrorCode RigidJointSetUp(Rigid rigid, PetscInt j);
+extern void RigidJointRows(Rigid rigid, RigidJoint *joint, RigidRow row[]);
+
+/* rigidconstraint.c */
+extern PetscErrorCode RigidSystemCreate(Rigid rigid);
+extern PetscErrorCode RigidSystemDestroy(Rigid rigid);
+extern PetscErrorCode RigidSystemProjectVelocity(Rigid rigid);
+extern PetscErrorCode RigidSystemAdvance(Rigid rigid, PetscReal dt);
+extern PetscErrorCode RigidSystemHasBody(Rigid rigid, PetscInt i, PetscBool *has);
+
 /* rigidstep.c */
+extern void RigidBodyMobility(const RigidBody *b, const PetscReal J[6], PetscReal W[6]);
 extern void RigidBodyOmega(const RigidBody *b, const PetscReal q[4], PetscReal w[3]);
 extern void RigidBodySetOmega(RigidBody *b, const PetscReal w[3]);
 extern void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3], PetscReal T[3]);
@@ -58,6 +99,7 @@ extern void RigidBodyAcceleration(Rigid rigid, const RigidBody *b, PetscReal A[3
 extern void RigidBodyKick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], PetscReal dt);
 extern void RigidBodyKickApplied(Rigid rigid, RigidBody *b, PetscReal dt);
 extern PetscErrorCode RigidBodyDrift(Rigid rigid, PetscInt i, PetscReal dt);
+extern PetscErrorCode RigidBodyCheckLoad(Rigid rigid, PetscInt i);
 extern PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt);
 
 #endif

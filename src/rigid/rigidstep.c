@@ -38,6 +38,15 @@ static void SolveUnlocked(const RigidBody *b, const PetscReal q[4], const PetscR
   Mat3Solve(A, rhs, x);
 }
 
+/* W = M^-1 J for a wrench J = (force, torque): what it changes (V, w) by in unit time, gyroscopic terms aside. */
+void RigidBodyMobility(const RigidBody *b, const PetscReal J[6], PetscReal W[6])
+{
+  for (int k = 0; k < 6; k++) W[k] = 0.;
+  if (b->spec.motion != RIGID_FREE) return;
+  for (int k = 0; k < 3; k++) W[k] = b->spec.lock[k] ? 0. : J[k] / b->spec.mass;
+  SolveUnlocked(b, b->q, J + 3, W + 3);
+}
+
 /* Angular velocity (space frame) of body b, were its orientation q. */
 void RigidBodyOmega(const RigidBody *b, const PetscReal q[4], PetscReal w[3])
 {
@@ -223,15 +232,26 @@ static PetscErrorCode AdvanceFree(Rigid rigid, PetscInt i, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt)
+PetscErrorCode RigidBodyCheckLoad(Rigid rigid, PetscInt i)
 {
-  RigidBody *b = &rigid->body[i];
+  const RigidBody *b = &rigid->body[i];
 
   PetscFunctionBegin;
   for (int k = 0; k < 3; k++) {
     PetscCheck(!PetscIsInfOrNanReal(b->F[k]) && !PetscIsInfOrNanReal(b->T[k]), rigid->comm, PETSC_ERR_FP,
                "Rigid body %" PetscInt_FMT ": force[%d] = %g N, torque[%d] = %g N m at t = %g s are not finite", i, k,
                (double)b->F[k], k, (double)b->T[k], (double)rigid->t);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt)
+{
+  RigidBody *b = &rigid->body[i];
+
+  PetscFunctionBegin;
+  PetscCall(RigidBodyCheckLoad(rigid, i));
+  for (int k = 0; k < 3; k++) {
     b->Fused[k] = b->F[k];
     b->Tused[k] = b->T[k];
   }
