@@ -156,6 +156,34 @@ FROND_EXTERN PetscErrorCode RigidGetJointEnergy(Rigid rigid, PetscReal *elastic)
 /* Steps of the integrator in one RigidAdvance(), >= 1. */
 FROND_EXTERN PetscErrorCode RigidSetSubsteps(Rigid rigid, PetscInt n);
 
+/*
+  Beam of rigid trunks joined by rotational springs, K = EI/dx (lumped elasticity, Capasso et al., Eqs. 10-23): trunks in a row
+  are bodies of their own, hinges are bend joints. The hinge of a clamped end has 2 K.
+*/
+typedef enum { RIGID_END_FREE, RIGID_END_PIN, RIGID_END_CLAMP } RigidEnd;
+
+typedef struct {
+  PetscReal start[3], end[3]; /* m */
+  PetscInt trunks;            /* N >= 1 */
+  PetscReal section[2]; /* (d, 0): circle of diameter d; (b, h): rectangle, 3D: b = h only; in 2D h is the thickness, b is 1; m */
+  PetscReal density;    /* kg/m^3 */
+  PetscReal young;      /* E, Pa */
+  PetscReal poisson;    /* 3D: torsion G J = E J/(2 (1 + nu)), J = 2 I */
+  PetscReal EI, rhoA;   /* overrides, N m^2, kg/m (2D: N m, kg/m^2); PETSC_DECIDE: from the section */
+  PetscReal velocity[3]; /* initial, m/s */
+  RigidEnd end0, end1;
+  PetscReal damping;        /* c of the damper between the free end (end1) and the ground, N s/m; 0: none */
+  PetscReal damperaxis[3];  /* its direction, any length > 0 */
+  PetscReal hingedamping;   /* of each hinge, N m s/rad */
+  PetscReal yield, rupture; /* of each hinge, N m, rad; default: never */
+} RigidLumpedSpec;
+
+FROND_EXTERN PetscErrorCode RigidLumpedSpecInit(RigidLumpedSpec *spec);
+/* Adds `trunks` bodies and their joints; *body and *joint are the first ones (each may be NULL). */
+FROND_EXTERN PetscErrorCode RigidAddLumpedBeam(Rigid rigid, const RigidLumpedSpec *spec, PetscInt *body, PetscInt *joint);
+/* Ends of the trunks of a beam whose first body is `body`: (trunks + 1) x 3, m. */
+FROND_EXTERN PetscErrorCode RigidGetLumpedNodes(Rigid rigid, PetscInt body, PetscInt trunks, PetscReal x[]);
+
 /* Signed distance (m) from a point in the body frame to the surface, negative inside; exact for every shape. */
 FROND_EXTERN PetscReal RigidShapeDistance(const RigidBodySpec *spec, const PetscReal xbody[3]);
 
