@@ -3,6 +3,8 @@ import csv
 import glob
 import os
 import re
+import resource
+import shutil
 import signal
 import sys
 import time
@@ -192,6 +194,54 @@ def test_kill():
     history("kill")
 
 
+def test_full_disk():
+    """Files may not grow past 40 kB from some frame on: the run ends with one line, and what was there stays whole."""
+    p = frond.start("run", "small.yaml", "-output_dir", "full", "-time_end", "1000", "-output_every", "0.001")
+    wait_for_frames("full", 3, p)
+    resource.prlimit(p.pid, resource.RLIMIT_FSIZE, (40000, 40000))
+    out, err = p.communicate(timeout=60)
+    check(p.returncode == 3, "full disk: exit code %d, expected 3" % p.returncode)
+    check(len(err.splitlines()) == 1 and err.startswith("frond: error: cannot write"), "full disk: one line: %r" % err)
+    times = xdmf_times("full")
+    check(len(times) >= 3, "full disk: %d frames stay" % len(times))
+    for i in range(len(times)):
+        check_frame(frond.path("full", "frame_%05d.h5" % i))
+
+
+LID = """
+domain_lo: [0, 0, 0]
+domain_hi: [1, 1, 0]
+walls: [xmin, xmax, ymin, ymax]
+wall_ymax_velocity: [1, 0, 0]
+sph: {dim: 2, dp: 0.1, viscosity: 100, max_speed: 1}
+time_end: 0.1
+"""
+
+
+def test_lid():
+    """A lid slides along itself in a closed box: its markers keep their places, and the fluid below follows it."""
+    frond.write("lid.yaml", LID)
+    frond.runs("run", "lid.yaml")
+    frames = sorted(glob.glob(frond.path("out_lid", "frame_*.h5")))
+    with h5py.File(frames[0], "r") as a, h5py.File(frames[-1], "r") as b:
+        number = [int(k[6:]) for k, v in b["markers"].attrs.items() if text(v) == "wall_ymax"][0]
+        lid, fluid = b["markers/group"][:] == number, b["markers/group"][:] == -1
+        check(lid.any() and np.array_equal(a["markers/position"][:][lid], b["markers/position"][:][lid]), "the lid's markers stay")
+        check((b["markers/velocity"][:][lid, 0] == 1).all(), "the lid's markers have its velocity")
+        top = fluid & (b["markers/position"][:][:, 1] > 0.9)
+        check(b["markers/velocity"][:][top, 0].mean() > 0.1, "the fluid below the lid follows")
+    check(history("out_lid")["wall_ymax_fx"][1][-1] < 0, "the fluid holds the lid back")
+
+
+def test_ranks():
+    """One rank for now: two are refused in one line."""
+    if not shutil.which("mpirun"):
+        return
+    rc, out, err = frond("check", "small.yaml", wrapper=("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"))
+    lines = [line for line in err.splitlines() if line.startswith("frond: error:")]
+    check(rc == 1 and len(lines) == 1 and "1 MPI rank, not 2" in lines[0], "2 ranks: exit code %d, %s" % (rc, err[:300]))
+
+
 test_files()
 test_transfer()
 test_overrides()
@@ -203,4 +253,7 @@ test_fault("v")
 test_fault("x")
 test_signals()
 test_kill()
+test_full_disk()
+test_lid()
+test_ranks()
 apptest.report()

@@ -23,7 +23,7 @@ typedef struct {
   char context[128]; /* what the command was doing, put before the message; empty for nothing */
 } AppErrors;
 PetscErrorCode AppErrorInstall(AppErrors *errors);
-int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr);
+int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr, PetscBool quiet);
 
 /* appoptions.c: tables of options, read through PETSc so that -help lists them. */
 typedef enum { OPT_REAL, OPT_INT, OPT_BOOL, OPT_STRING, OPT_VEC, OPT_AXISANGLE, OPT_CHOICE, OPT_SUBSET, OPT_NAMES } AppOptType;
@@ -109,6 +109,10 @@ PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt);
 PetscErrorCode AppInjectFault(App *app);
 /* Position and velocity (m, m/s) at material coordinate s (m) of a beam, and r,x. */
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3]);
+
+/* appwall.c */
+PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth,
+                             const PetscReal velocity[3], CoupleSurface *surface);
 
 /* appunknown.c: options that nothing has asked for are an error. */
 typedef struct {

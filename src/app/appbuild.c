@@ -244,7 +244,7 @@ static PetscErrorCode add_walls(App *app)
     }
     if (!m) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "wall_%s", SceneFaces[f]));
-    PetscCall(CoupleSurfaceCreateWall(PETSC_COMM_SELF, name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
+    PetscCall(AppWallCreate(name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
     PetscCall(add_surface(app, name, surface));
   }
   PetscCall(PetscFree3(fx, fvolume, fdepth));

@@ -55,8 +55,7 @@ static void name_option(const AppErrors *errors, size_t len, char name[])
   PetscFree(all);
 }
 
-/* Print the line of the innermost error and return the exit code for it. */
-int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr)
+static void print_line(const AppErrors *errors)
 {
   char option[PETSC_MAX_OPTION_NAME];
 
@@ -66,6 +65,12 @@ int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr)
   if (option[0]) fprintf(stderr, "option %s: ", option);
   if (errors->context[0]) fprintf(stderr, "%s: ", errors->context);
   fprintf(stderr, "%s\n", errors->message);
+}
+
+/* Print the line of the innermost error, unless quiet, and return the exit code for it. */
+int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr, PetscBool quiet)
+{
+  if (!quiet) print_line(errors);
   switch ((int)ierr) {
   case PETSC_ERR_FP:
   case PETSC_ERR_NOT_CONVERGED:

@@ -8,6 +8,7 @@
 #include "app.h"
 #include <hdf5.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -128,28 +129,48 @@ static void add_misspelt(const AppKnown *known, AppErrors *errors)
   snprintf(errors->message + n, sizeof(errors->message) - n, " [%s]", text);
 }
 
+/* PETSc's arguments: ours less the words before the options and -help, whose text begins with ours (see execute()). */
+static int petsc_arguments(int argc, char **argv, char **out)
+{
+  int n = 1;
+
+  out[0] = argv[0];
+  for (int i = 1; i < argc; i++) {
+    const char *a = argv[i];
+    if (n == 1 && a[0] != '-') continue;
+    if (!strcmp(a, "-help") || !strcmp(a, "--help") || !strcmp(a, "-h") || !strcmp(a, "-version") || !strcmp(a, "--version"))
+      continue;
+    out[n++] = argv[i];
+  }
+  out[n] = NULL;
+  return n;
+}
+
 int main(int argc, char **argv)
 {
   AppErrors errors = {PETSC_FALSE, "", ""};
   AppKnown known = {0, 0, NULL, PETSC_FALSE};
-  int exitcode = 0, petscargc = 1;
+  int exitcode = 0, petscargc;
+  char **petscargv = malloc(((size_t)argc + 1) * sizeof(char *)), **list = petscargv;
   PetscErrorCode ierr;
-  char **petscargv = argv;
 
-  if (MPI_Init(&argc, &argv)) return APP_EXIT_USER;
+  if (!petscargv || MPI_Init(&argc, &argv)) return APP_EXIT_USER;
+  petscargc = petsc_arguments(argc, argv, petscargv);
   if (PetscInitialize(&petscargc, &petscargv, NULL, NULL)) return APP_EXIT_USER;
   if (AppErrorInstall(&errors)) return APP_EXIT_USER;
   signal(SIGPIPE, SIG_DFL); /* frond -help | head */
-  ierr = PetscOptionsInsertArgs(NULL, argc - 1, argv + 1);
-  (void)PetscOptionsClearValue(NULL, "-help"); /* our own help comes first, see execute() */
-  if (!ierr) ierr = execute(argc, argv, &errors, &known, &exitcode);
+  signal(SIGXFSZ, SIG_IGN); /* a file too large is an error of writing, reported in one line */
+  ierr = execute(argc, argv, &errors, &known, &exitcode);
   if (ierr) {
     AppErrors first = errors;
     if (!errors.trace) add_misspelt(&known, &first);
-    exitcode = AppErrorReport(&first, ierr);
+    exitcode = AppErrorReport(&first, ierr, (PetscBool)(PetscGlobalRank != 0));
   } else if (PetscFinalize())
     exitcode = APP_EXIT_USER;
   AppKnownFree(&known);
+  free(list);
+  fflush(NULL);
+  if (exitcode == APP_EXIT_IO) _exit(exitcode); /* HDF5 cleans up inside MPI_Finalize(), and crashes on a file it cannot write */
   MPI_Finalize();
   return exitcode;
 }
