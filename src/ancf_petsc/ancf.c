@@ -1,5 +1,6 @@
 /* ancf.c - lifecycle, beams, options and state of the Ancf object. */
 #include "ancfimpl.h"
+#include "blocktri.h"
 
 PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 
@@ -17,6 +18,7 @@ static PetscErrorCode AncfRegister(void)
   if (registered) PetscFunctionReturn(PETSC_SUCCESS);
   registered = PETSC_TRUE;
   PetscCall(PetscClassIdRegister("Ancf", &id));
+  PetscCall(PCBlockTriRegister());
   PetscCall(PetscLogEventRegister("AncfAdvance", id, &ANCF_Advance));
   PetscCall(PetscLogEventRegister("AncfForce", id, &ANCF_Force));
   PetscCall(PetscLogEventRegister("AncfTangent", id, &ANCF_Tangent));

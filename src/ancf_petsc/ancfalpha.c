@@ -26,16 +26,6 @@ PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfAlphaJacobian(Ancf ancf, PetscReal shift, Mat P)
-{
-  PetscFunctionBegin;
-  PetscCall(MatZeroEntries(P));
-  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) PetscCall(MatSetValue(P, i, i, shift, INSERT_VALUES));
-  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Makes TSALPHA2 continue from (t, e, v) with the acceleration ancf->history and a previous step of length dt. */
 PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt)
 {

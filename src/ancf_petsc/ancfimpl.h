@@ -101,9 +101,11 @@ extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscRea
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 
-/* P = tangent + shift M; diag on the diagonal of eliminated coordinates. Form and stride follow from the block size of P. */
+/* ancfmat.c. P = tangent + shift M; diag on the diagonal of eliminated coordinates. Form and stride follow from the block size of
+ * P. */
 extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P);
-extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, Mat *J);
+extern PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P);
+extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J);
 /* Rows of eliminated coordinates: f = x, or 0 when x is NULL. */
 extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
 
@@ -114,7 +116,6 @@ extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscR
 extern PetscErrorCode AncfAlphaSetUp(Ancf ancf);
 extern PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt);
 extern PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f);
-extern PetscErrorCode AncfAlphaJacobian(Ancf ancf, PetscReal shift, Mat P);
 
 /* ancfmass.c */
 extern PetscErrorCode AncfMassFactor(Ancf ancf);

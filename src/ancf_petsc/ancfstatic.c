@@ -40,12 +40,10 @@ static PetscErrorCode StaticCreate(Ancf ancf, SNES *snes, Vec *X, Mat *J)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < ancf->nbeams; b++) EA = PetscMax(EA, ancf->beams[b].EA);
   PetscCall(VecCreateSeq(ancf->comm, 6 * ancf->nnodes, X));
-  PetscCall(AncfCreateMatrix(ancf, 6, J));
   PetscCall(SNESCreate(ancf->comm, snes));
   PetscCall(SNESSetOptionsPrefix(*snes, ancf->prefix));
   PetscCall(SNESAppendOptionsPrefix(*snes, "ancf_static_"));
   PetscCall(SNESSetFunction(*snes, NULL, StaticFunction, ancf));
-  PetscCall(SNESSetJacobian(*snes, *J, *J, StaticJacobian, ancf));
   /* Full steps: bending first stretches the chord, so that the residual rises before it falls. */
   PetscCall(SNESGetLineSearch(*snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
@@ -57,6 +55,8 @@ static PetscErrorCode StaticCreate(Ancf ancf, SNES *snes, Vec *X, Mat *J)
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCILU));
   PetscCall(SNESSetFromOptions(*snes));
+  PetscCall(AncfCreateMatrix(ancf, 6, pc, J));
+  PetscCall(SNESSetJacobian(*snes, *J, *J, StaticJacobian, ancf));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

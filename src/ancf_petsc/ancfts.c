@@ -4,7 +4,7 @@
   Eliminated coordinates (Sect. 2.3) keep their rows, so that the block structure is regular: the beams see their
   prescribed values whatever the solver proposes, and their rows read eddot = 0.
 */
-#include "ancfimpl.h"
+#include "ancfbatch.h"
 
 /* Which form each TS type takes; anything else is refused. */
 static const struct {
@@ -26,38 +26,6 @@ static const struct {
     {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC},
 };
 
-/* Coordinates x of a node as the beams see them: eliminated ones are replaced by fix (NULL: zero). */
-static inline void Gather(const Ancf ancf, const AncfBatch *b, const PetscReal *x, PetscInt stride, const PetscReal *fix,
-                          AncfLanes out[12])
-{
-  for (int i = 0; i < ANCF_LANES; i++) {
-    for (int side = 0; side < 2; side++) {
-      PetscInt j = b->node[i] + side;
-      const PetscReal *xj = x + j * stride;
-      unsigned char f = ancf->fixed[j];
-
-      for (int c = 0; c < 6; c++) out[6 * side + c][i] = xj[c];
-      if (PetscUnlikely(f)) {
-        for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++)
-          out[6 * side + c][i] = fix ? fix[6 * j + c] : 0;
-      }
-    }
-  }
-}
-
-static inline AncfLanes Load(const PetscReal x[ANCF_LANES])
-{
-  AncfLanes v;
-
-  for (int i = 0; i < ANCF_LANES; i++) v[i] = x[i];
-  return v;
-}
-
-static inline AncfSection BatchSection(const AncfBatch *b)
-{
-  return (AncfSection){Load(b->EA), Load(b->EI), Load(b->l)};
-}
-
 PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
 {
   PetscReal w = 0;
@@ -65,10 +33,10 @@ PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
   PetscFunctionBegin;
   for (PetscInt k = 0; k < ancf->nbatches; k++) {
     const AncfBatch *b = &ancf->batches[k];
-    AncfSection s = BatchSection(b);
+    AncfSection s = AncfBatchSection(b);
     AncfLanes e[12], Q[12], U;
 
-    Gather(ancf, b, ancf->e, 6, ancf->rest, e);
+    AncfGather(ancf, b, ancf->e, 6, ancf->rest, e);
     AncfElementForce(&ancf->rule, &s, e, Q, &U);
     for (PetscInt i = 0; i < b->n; i++) w += U[i];
   }
@@ -90,14 +58,14 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
         f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
   for (PetscInt k = 0; k < ancf->nbatches; k++) {
     const AncfBatch *b = &ancf->batches[k];
-    AncfSection s = BatchSection(b);
+    AncfSection s = AncfBatchSection(b);
     AncfLanes x[12], Q[12];
 
-    Gather(ancf, b, e, stride, ancf->rest, x);
+    AncfGather(ancf, b, e, stride, ancf->rest, x);
     AncfElementForce(&ancf->rule, &s, x, Q, NULL);
     if (a) {
-      Gather(ancf, b, a, stride, NULL, x);
-      AncfElementInertia(Load(b->rhoA), s.l, x, Q);
+      AncfGather(ancf, b, a, stride, NULL, x);
+      AncfElementInertia(AncfLoad(b->rhoA), s.l, x, Q);
     }
     for (PetscInt i = 0; i < b->n; i++) {
       PetscReal *fj = f + b->node[i] * fstride;
@@ -119,111 +87,6 @@ void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, P
     for (int c = 0; c < 6; c++)
       if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] : 0;
   }
-}
-
-/* k = tangent + shift * mass of one element, 12 x 12 row-major, with rows and columns of eliminated coordinates cleared. */
-static inline void AncfElementMatrix(Ancf ancf, const AncfBatch *b, PetscInt lane, const AncfLanes K[ANCF_TANGENT],
-                                     PetscReal shift, PetscReal k[144])
-{
-  PetscReal m[16];
-
-  AncfTangentExpand(K, lane, k);
-  AncfElementMass(b->rhoA[lane], b->l[lane], m);
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++)
-      for (int c = 0; c < 3; c++) k[12 * (3 * i + c) + 3 * j + c] += shift * m[4 * i + j];
-  for (int side = 0; side < 2; side++) {
-    unsigned char fix = ancf->fixed[b->node[lane] + side];
-
-    if (PetscLikely(!fix)) continue;
-    for (int c = 0; c < 6; c++) {
-      if (!(fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
-      for (int j = 0; j < 12; j++) k[12 * (6 * side + c) + j] = k[12 * j + 6 * side + c] = 0;
-    }
-  }
-}
-
-/*
-  Adds the element matrices to P, whose node blocks have 6 rows (second-order form) or 12 with the equations of motion in
-  the last 6 (first-order form): there the tangent takes the columns of e and the mass those of v.
-*/
-static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P)
-{
-  PetscReal k[144], m[144], blk[576];
-  AncfLanes zero[ANCF_TANGENT] = {{0}};
-  PetscInt bs;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetBlockSize(P, &bs));
-  for (PetscInt n = 0; n < ancf->nbatches; n++) {
-    const AncfBatch *b = &ancf->batches[n];
-    AncfSection s = BatchSection(b);
-    AncfLanes x[12], Q[12], K[ANCF_TANGENT];
-
-    Gather(ancf, b, e, stride, ancf->rest, x);
-    AncfElementTangent(&ancf->rule, &s, x, Q, K);
-    for (PetscInt i = 0; i < b->n; i++) {
-      PetscInt idx[2] = {b->node[i], b->node[i] + 1};
-
-      if (bs == 6) {
-        AncfElementMatrix(ancf, b, i, K, shift, k);
-        PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, k, ADD_VALUES));
-        continue;
-      }
-      AncfElementMatrix(ancf, b, i, K, 0, k);
-      AncfElementMatrix(ancf, b, i, zero, shift, m);
-      PetscCall(PetscArrayzero(blk, 576));
-      for (int r = 0; r < 12; r++)
-        for (int c = 0; c < 12; c++) {
-          int row = 12 * (r / 6) + 6 + r % 6, col = 12 * (c / 6) + c % 6;
-
-          blk[24 * row + col] = k[12 * r + c];
-          blk[24 * row + col + 6] = m[12 * r + c];
-        }
-      PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, blk, ADD_VALUES));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
-static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
-{
-  PetscReal blk[144];
-  PetscInt bs;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetBlockSize(P, &bs));
-  for (PetscInt j = 0; j < ancf->nnodes; j++) {
-    if (bs == 6 && !ancf->fixed[j]) continue;
-    PetscCall(PetscArrayzero(blk, 144));
-    for (int c = 0; c < 6; c++) {
-      if (ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) blk[(bs + 1) * (bs - 6 + c)] = shift;
-      if (bs == 12) {
-        blk[13 * c] = shift;
-        blk[12 * c + 6 + c] = -1;
-      }
-    }
-    PetscCall(MatSetValuesBlocked(P, 1, &j, 1, &j, blk, ADD_VALUES));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscLogEventBegin(ANCF_Tangent, 0, 0, 0, 0));
-  PetscCall(MatZeroEntries(P));
-  PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
-  PetscCall(AncfAssembleNodes(ancf, diag, P));
-  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
-  if (J != P) {
-    PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
-  }
-  PetscCall(PetscLogEventEnd(ANCF_Tangent, 0, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* F = M a + Q^e - Q^g - Q^a */
@@ -265,7 +128,7 @@ static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, Pe
   (void)shiftV;
   PetscCall(VecGetArrayRead(U, &u));
   if (((Ancf)ctx)->priming)
-    PetscCall(AncfAlphaJacobian((Ancf)ctx, shiftA, P));
+    PetscCall(AncfAssembleIdentity((Ancf)ctx, shiftA, P));
   else
     PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, shiftA, J, P));
   PetscCall(VecRestoreArrayRead(U, &u));
@@ -421,40 +284,6 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, Mat *J)
-{
-  PetscInt n = bs * ancf->nnodes, *nnz;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(ancf->nnodes, &nnz));
-  for (PetscInt b = 0; b < ancf->nbeams; b++) {
-    const AncfBeam *m = &ancf->beams[b];
-
-    for (PetscInt k = 0; k <= m->spec.elements; k++) nnz[m->node + k] = 3 - (k == 0) - (k == m->spec.elements);
-  }
-  PetscCall(MatCreate(ancf->comm, J));
-  PetscCall(MatSetSizes(*J, n, n, n, n));
-  PetscCall(MatSetBlockSize(*J, bs));
-  PetscCall(MatSetType(*J, MATSEQBAIJ));
-  PetscCall(MatSetOptionsPrefix(*J, ancf->prefix));
-  PetscCall(MatAppendOptionsPrefix(*J, "ancf_"));
-  PetscCall(MatSetFromOptions(*J));
-  PetscCall(MatXAIJSetPreallocation(*J, bs, nnz, NULL, NULL, NULL));
-  PetscCall(PetscFree(nnz));
-  for (PetscInt b = 0; b < ancf->nbeams; b++) {
-    PetscReal zero[4 * 144] = {0};
-
-    for (PetscInt k = 0; k < ancf->beams[b].spec.elements; k++) {
-      PetscInt idx[2] = {ancf->beams[b].node + k, ancf->beams[b].node + k + 1};
-
-      PetscCall(MatSetValuesBlocked(*J, 2, idx, 2, idx, zero, INSERT_VALUES));
-    }
-  }
-  PetscCall(MatAssemblyBegin(*J, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*J, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AncfSetUpSymplectic(Ancf ancf)
 {
   IS is;
@@ -528,25 +357,29 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
 {
   const PetscInt n = 6 * ancf->nnodes;
   SNES snes;
+  KSP ksp;
+  PC pc;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * n, &ancf->backup));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
+  PetscCall(TSGetSNES(ancf->ts, &snes));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
   if (ancf->form == ANCF_FORM_SECOND) {
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->e, &ancf->U));
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->v, &ancf->V));
-    PetscCall(AncfCreateMatrix(ancf, 6, &ancf->J));
+    PetscCall(AncfCreateMatrix(ancf, 6, pc, &ancf->J));
     PetscCall(TSSetI2Function(ancf->ts, NULL, AncfI2Function, ancf));
     PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
-    PetscCall(TSGetSNES(ancf->ts, &snes));
     PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
     PetscCall(AncfAlphaSetUp(ancf));
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {
-      PetscCall(AncfCreateMatrix(ancf, 12, &ancf->J));
+      PetscCall(AncfCreateMatrix(ancf, 12, pc, &ancf->J));
       PetscCall(TSSetEquationType(ancf->ts, TS_EQ_ODE_IMPLICIT));
       PetscCall(TSSetIFunction(ancf->ts, NULL, AncfIFunction, ancf));
       PetscCall(TSSetIJacobian(ancf->ts, ancf->J, ancf->J, AncfIJacobian, ancf));

@@ -1,0 +1,2 @@
+add_executable(bench_beams bench_beams.c)
+target_link_libraries(bench_beams PRIVATE frond)

@@ -1,0 +1,39 @@
+/* ancfbatch.h - private: elements of a batch into vector lanes. */
+#ifndef ANCFBATCH_H
+#define ANCFBATCH_H
+
+#include "ancfimpl.h"
+
+/* Coordinates x of a node as the beams see them: eliminated ones are replaced by fix (NULL: zero). */
+static inline void AncfGather(const Ancf ancf, const AncfBatch *b, const PetscReal *x, PetscInt stride, const PetscReal *fix,
+                              AncfLanes out[12])
+{
+  for (int i = 0; i < ANCF_LANES; i++) {
+    for (int side = 0; side < 2; side++) {
+      PetscInt j = b->node[i] + side;
+      const PetscReal *xj = x + j * stride;
+      unsigned char f = ancf->fixed[j];
+
+      for (int c = 0; c < 6; c++) out[6 * side + c][i] = xj[c];
+      if (PetscUnlikely(f)) {
+        for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++)
+          out[6 * side + c][i] = fix ? fix[6 * j + c] : 0;
+      }
+    }
+  }
+}
+
+static inline AncfLanes AncfLoad(const PetscReal x[ANCF_LANES])
+{
+  AncfLanes v;
+
+  for (int i = 0; i < ANCF_LANES; i++) v[i] = x[i];
+  return v;
+}
+
+static inline AncfSection AncfBatchSection(const AncfBatch *b)
+{
+  return (AncfSection){AncfLoad(b->EA), AncfLoad(b->EI), AncfLoad(b->l)};
+}
+
+#endif

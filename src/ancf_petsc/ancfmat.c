@@ -1,0 +1,389 @@
+/*
+  ancfmat.c - the matrix tangent + shift M (Eqs. 28-30 linearised): assembled into any Mat, or, for PCBLOCKTRI, kept as the
+  coordinates it was asked at and made block by block when the solver needs it.
+*/
+#include "ancfbatch.h"
+#include "blocktri.h"
+
+/* The unassembled matrix: MATSHELL that produces its blocks for PCBLOCKTRI. */
+typedef struct {
+  Ancf ancf;
+  PetscReal *e, shift, diag; /* linearised here; shift of M; diagonal of eliminated coordinates */
+  PetscBool identity;        /* diag times the identity, nothing else */
+  PetscInt *first, *length;  /* chains of the source */
+  BlockTriSource source;
+} AncfShell;
+
+/* k = tangent + shift * mass of one element, 12 x 12 row-major, with rows and columns of eliminated coordinates cleared. */
+static inline void AncfElementMatrix(Ancf ancf, const AncfBatch *b, PetscInt lane, const AncfLanes K[ANCF_TANGENT],
+                                     PetscReal shift, PetscReal k[144])
+{
+  PetscReal m[16];
+
+  AncfTangentExpand(K, lane, k);
+  AncfElementMass(b->rhoA[lane], b->l[lane], m);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      for (int c = 0; c < 3; c++) k[12 * (3 * i + c) + 3 * j + c] += shift * m[4 * i + j];
+  for (int side = 0; side < 2; side++) {
+    unsigned char fix = ancf->fixed[b->node[lane] + side];
+
+    if (PetscLikely(!fix)) continue;
+    for (int c = 0; c < 6; c++) {
+      if (!(fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
+      for (int j = 0; j < 12; j++) k[12 * (6 * side + c) + j] = k[12 * j + 6 * side + c] = 0;
+    }
+  }
+}
+
+/*
+  Adds the element matrices to P, whose node blocks have 6 rows (second-order form) or 12 with the equations of motion in
+  the last 6 (first-order form): there the tangent takes the columns of e and the mass those of v.
+*/
+static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P)
+{
+  PetscReal k[144], m[144], blk[576];
+  AncfLanes zero[ANCF_TANGENT] = {{0}};
+  PetscInt bs;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetBlockSize(P, &bs));
+  for (PetscInt n = 0; n < ancf->nbatches; n++) {
+    const AncfBatch *b = &ancf->batches[n];
+    AncfSection s = AncfBatchSection(b);
+    AncfLanes x[12], Q[12], K[ANCF_TANGENT];
+
+    AncfGather(ancf, b, e, stride, ancf->rest, x);
+    AncfElementTangent(&ancf->rule, &s, x, Q, K);
+    for (PetscInt i = 0; i < b->n; i++) {
+      PetscInt idx[2] = {b->node[i], b->node[i] + 1};
+
+      if (bs == 6) {
+        AncfElementMatrix(ancf, b, i, K, shift, k);
+        PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, k, ADD_VALUES));
+        continue;
+      }
+      AncfElementMatrix(ancf, b, i, K, 0, k);
+      AncfElementMatrix(ancf, b, i, zero, shift, m);
+      PetscCall(PetscArrayzero(blk, 576));
+      for (int r = 0; r < 12; r++)
+        for (int c = 0; c < 12; c++) {
+          int row = 12 * (r / 6) + 6 + r % 6, col = 12 * (c / 6) + c % 6;
+
+          blk[24 * row + col] = k[12 * r + c];
+          blk[24 * row + col + 6] = m[12 * r + c];
+        }
+      PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, blk, ADD_VALUES));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
+static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
+{
+  PetscReal blk[144];
+  PetscInt bs;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetBlockSize(P, &bs));
+  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+    if (bs == 6 && !ancf->fixed[j]) continue;
+    PetscCall(PetscArrayzero(blk, 144));
+    for (int c = 0; c < 6; c++) {
+      if (ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) blk[(bs + 1) * (bs - 6 + c)] = shift;
+      if (bs == 12) {
+        blk[13 * c] = shift;
+        blk[12 * c + 6 + c] = -1;
+      }
+    }
+    PetscCall(MatSetValuesBlocked(P, 1, &j, 1, &j, blk, ADD_VALUES));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P)
+{
+  PetscBool shell;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)P, MATSHELL, &shell));
+  PetscCall(PetscLogEventBegin(ANCF_Tangent, 0, 0, 0, 0));
+  if (shell) {
+    AncfShell *s;
+
+    PetscCall(MatShellGetContext(P, &s));
+    PetscCall(PetscArraycpy(s->e, e, 6 * ancf->nnodes));
+    s->shift = shift;
+    s->diag = diag;
+    s->identity = PETSC_FALSE;
+  } else {
+    PetscCall(MatZeroEntries(P));
+    PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
+    PetscCall(AncfAssembleNodes(ancf, diag, P));
+  }
+  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
+  if (J != P) {
+    PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  }
+  PetscCall(PetscLogEventEnd(ANCF_Tangent, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* P = diag times the identity. */
+PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P)
+{
+  PetscBool shell;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)P, MATSHELL, &shell));
+  if (shell) {
+    AncfShell *s;
+
+    PetscCall(MatShellGetContext(P, &s));
+    s->diag = diag;
+    s->identity = PETSC_TRUE;
+  } else {
+    PetscCall(MatZeroEntries(P));
+    for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) PetscCall(MatSetValue(P, i, i, diag, INSERT_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coordinates of node `node` of each lane's beam, fixed ones replaced; lanes past their end stay as they are. */
+static inline void ShellNode(const AncfShell *s, const PetscInt chain[ANCF_LANES], PetscInt node, AncfLanes x[6])
+{
+  for (int i = 0; i < ANCF_LANES; i++) {
+    PetscInt j;
+
+    if (chain[i] < 0 || node >= s->length[chain[i]]) continue;
+    j = s->first[chain[i]] + node;
+    for (int c = 0; c < 6; c++) x[c][i] = s->e[6 * j + c];
+    if (PetscUnlikely(s->ancf->fixed[j]))
+      for (int c = s->ancf->fixed[j] & ANCF_FIX_POSITION ? 0 : 3; c < (s->ancf->fixed[j] & ANCF_FIX_GRADIENT ? 6 : 3); c++)
+        x[c][i] = s->ancf->rest[6 * j + c];
+  }
+}
+
+/* Adds the four 6 x 6 blocks of the element between two rows; r_0 rows and columns are minus those of r_1. */
+static inline void ShellAdd(const AncfLanes K[ANCF_TANGENT], AncfLanes mass, AncfLanes l, AncfLanes *D0, AncfLanes *U,
+                            AncfLanes *D1)
+{
+  static const int sym[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  PetscReal t[16];
+  AncfLanes m[4][4];
+
+  AncfElementMass(1, 1, t);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) m[i][j] = t[4 * i + j] * mass * (i % 2 ? l : 0 * l + 1) * (j % 2 ? l : 0 * l + 1);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const AncfLanes aa = K[sym[i][j]], bb = K[6 + sym[i][j]], cc = K[12 + sym[i][j]];
+      const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j],
+                      cb = K[36 + 3 * j + i];
+
+      D0[6 * i + j] += bb;
+      D0[6 * i + 3 + j] -= ba;
+      D0[6 * (3 + i) + j] -= ab;
+      D0[6 * (3 + i) + 3 + j] += aa;
+      U[6 * i + j] = -bb;
+      U[6 * i + 3 + j] = -bc;
+      U[6 * (3 + i) + j] = ab;
+      U[6 * (3 + i) + 3 + j] = ac;
+      D1[6 * i + j] = bb;
+      D1[6 * i + 3 + j] = bc;
+      D1[6 * (3 + i) + j] = cb;
+      D1[6 * (3 + i) + 3 + j] = cc;
+    }
+  for (int c = 0; c < 3; c++)
+    for (int i = 0; i < 2; i++)
+      for (int j = 0; j < 2; j++) {
+        D0[6 * (3 * i + c) + 3 * j + c] += m[i][j];
+        U[6 * (3 * i + c) + 3 * j + c] += m[i][2 + j];
+        D1[6 * (3 * i + c) + 3 * j + c] += m[2 + i][2 + j];
+      }
+}
+
+/* Identity rows of eliminated coordinates and of rows past the end of a lane's beam. */
+static void ShellFix(const AncfShell *s, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D, AncfLanes *U)
+{
+  for (int i = 0; i < ANCF_LANES; i++)
+    for (PetscInt j = 0; j < nrows; j++) {
+      const PetscBool past = chain[i] < 0 || j >= s->length[chain[i]] ? PETSC_TRUE : PETSC_FALSE;
+      const unsigned char fix = past ? ANCF_FIX_POSITION | ANCF_FIX_GRADIENT : s->ancf->fixed[s->first[chain[i]] + j];
+
+      if (PetscLikely(!fix)) continue;
+      for (int r = fix & ANCF_FIX_POSITION ? 0 : 3; r < (fix & ANCF_FIX_GRADIENT ? 6 : 3); r++) {
+        for (int c = 0; c < 6; c++) {
+          D[36 * j + 6 * r + c][i] = D[36 * j + 6 * c + r][i] = 0;
+          if (j + 1 < nrows) U[36 * j + 6 * r + c][i] = 0;
+          if (j > 0) U[36 * (j - 1) + 6 * c + r][i] = 0;
+        }
+        D[36 * j + 7 * r][i] = past ? 1 : s->diag;
+      }
+    }
+}
+
+static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D, AncfLanes *U)
+{
+  const AncfShell *s = (const AncfShell *)ctx;
+  const AncfLanes zero = {0}, one = zero + 1.0;
+  AncfLanes e[12] = {zero, zero, zero, one, zero, zero, one, zero, zero, one, zero, zero};
+
+  if (s->identity) {
+    for (PetscInt j = 0; j < 36 * nrows; j++) {
+      D[j] = j % 36 % 7 ? zero : zero + s->diag;
+      U[j] = zero;
+    }
+    return;
+  }
+  for (int c = 0; c < 36; c++) D[c] = zero;
+  ShellNode(s, chain, 0, e);
+  for (PetscInt k = 0; k + 1 < nrows; k++) {
+    AncfSection sec = {zero, zero, one};
+    AncfLanes mass = zero, Q[12], K[ANCF_TANGENT];
+
+    for (int i = 0; i < ANCF_LANES; i++) {
+      const AncfBeam *b = &s->ancf->beams[chain[i] < 0 ? 0 : chain[i]];
+
+      if (chain[i] < 0 || k >= b->spec.elements) continue;
+      sec.EA[i] = b->EA;
+      sec.EI[i] = b->EI;
+      sec.l[i] = b->l;
+      mass[i] = s->shift * b->rhoA * b->l;
+    }
+    ShellNode(s, chain, k + 1, e + 6);
+    AncfElementTangent(&s->ancf->rule, &sec, e, Q, K);
+    ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
+    for (int c = 0; c < 6; c++) e[c] = e[6 + c];
+  }
+  ShellFix(s, chain, nrows, D, U);
+}
+
+static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
+{
+  AncfShell *s;
+  Ancf ancf;
+  const PetscScalar *x;
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(A, &s));
+  ancf = s->ancf;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(Y, &y));
+  PetscCall(PetscArrayzero(y, 6 * ancf->nnodes));
+  for (PetscInt n = 0; n < ancf->nbatches && !s->identity; n++) {
+    const AncfBatch *b = &ancf->batches[n];
+    AncfSection sec = AncfBatchSection(b);
+    AncfLanes e[12], Q[12], K[ANCF_TANGENT];
+    PetscReal k[144];
+
+    AncfGather(ancf, b, s->e, 6, ancf->rest, e);
+    AncfElementTangent(&ancf->rule, &sec, e, Q, K);
+    for (PetscInt i = 0; i < b->n; i++) {
+      AncfElementMatrix(ancf, b, i, K, s->shift, k);
+      for (int r = 0; r < 12; r++)
+        for (int c = 0; c < 12; c++) y[6 * b->node[i] + r] += k[12 * r + c] * x[6 * b->node[i] + c];
+    }
+  }
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (int c = 0; c < 6; c++)
+      if (s->identity || ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) y[6 * j + c] = s->diag * x[6 * j + c];
+  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ShellDestroy(Mat A)
+{
+  AncfShell *s;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(A, &s));
+  PetscCall(PetscFree3(s->e, s->first, s->length));
+  PetscCall(PetscFree(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfCreateShell(Ancf ancf, Mat *J)
+{
+  const PetscInt n = 6 * ancf->nnodes;
+  AncfShell *s;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  PetscCall(PetscMalloc3(n, &s->e, ancf->nbeams, &s->first, ancf->nbeams, &s->length));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    s->first[b] = ancf->beams[b].node;
+    s->length[b] = ancf->beams[b].spec.elements + 1;
+  }
+  s->ancf = ancf;
+  s->source = (BlockTriSource){ancf->nbeams, s->first, s->length, ShellFill, s};
+  PetscCall(MatCreateShell(ancf->comm, n, n, n, n, s, J));
+  PetscCall(MatSetBlockSize(*J, 6));
+  PetscCall(MatShellSetOperation(*J, MATOP_MULT, (void (*)(void))ShellMult));
+  PetscCall(MatShellSetOperation(*J, MATOP_DESTROY, (void (*)(void))ShellDestroy));
+  PetscCall(MatBlockTriSetSource(*J, &s->source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AncfCreateStored(Ancf ancf, PetscInt bs, Mat *J)
+{
+  PetscInt n = bs * ancf->nnodes, *nnz, *upper;
+  PetscBool sbaij;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(ancf->nnodes, &nnz, ancf->nnodes, &upper));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeam *m = &ancf->beams[b];
+
+    for (PetscInt k = 0; k <= m->spec.elements; k++)
+      nnz[m->node + k] = 3 - (k == 0) - (k == m->spec.elements), upper[m->node + k] = 2 - (k == m->spec.elements);
+  }
+  PetscCall(MatCreate(ancf->comm, J));
+  PetscCall(MatSetSizes(*J, n, n, n, n));
+  PetscCall(MatSetBlockSize(*J, bs));
+  PetscCall(MatSetType(*J, MATSEQBAIJ));
+  PetscCall(MatSetOptionsPrefix(*J, ancf->prefix));
+  PetscCall(MatAppendOptionsPrefix(*J, "ancf_"));
+  PetscCall(MatSetFromOptions(*J));
+  PetscCall(MatXAIJSetPreallocation(*J, bs, nnz, NULL, upper, NULL));
+  PetscCall(PetscFree2(nnz, upper));
+  PetscCall(MatSetOption(*J, MAT_SYMMETRIC, bs == 6 ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(PetscObjectTypeCompare((PetscObject)*J, MATSEQSBAIJ, &sbaij));
+  if (sbaij) PetscCall(MatSetOption(*J, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    PetscReal zero[4 * 144] = {0};
+
+    for (PetscInt k = 0; k < ancf->beams[b].spec.elements; k++) {
+      PetscInt idx[2] = {ancf->beams[b].node + k, ancf->beams[b].node + k + 1};
+
+      PetscCall(MatSetValuesBlocked(*J, 2, idx, 2, idx, zero, INSERT_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(*J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*J, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Matrix for this preconditioner: unassembled for PCBLOCKTRI unless -ancf_mat_type is given, else MATSEQBAIJ by default. */
+PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J)
+{
+  PetscBool blocktri, given;
+  char key[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBLOCKTRI, &blocktri));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "-%sancf_mat_type", ancf->prefix ? ancf->prefix : ""));
+  PetscCall(PetscOptionsHasName(NULL, NULL, key, &given));
+  if (blocktri && bs == 6 && !given)
+    PetscCall(AncfCreateShell(ancf, J));
+  else
+    PetscCall(AncfCreateStored(ancf, bs, J));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,462 @@
+/* blocktri.c - PCBLOCKTRI: batched block-tridiagonal elimination, see blocktri.h. */
+#include "blocktri.h"
+#include <stdlib.h>
+#if defined(_OPENMP)
+  #include <omp.h>
+#endif
+
+typedef BlockTriLanes Lanes;
+
+typedef struct {
+  PetscInt chain[BLOCKTRI_LANES], nrows; /* longest chain first */
+  PetscInt first[BLOCKTRI_LANES], length[BLOCKTRI_LANES];
+  size_t offset; /* of its first row in the stored factors, rows */
+} Batch;
+
+typedef struct {
+  PetscInt bs, nbatches, maxrows, nthreads;
+  Batch *batches;
+  PetscInt *first, *length, nchains; /* found in the matrix when it has no source */
+  const BlockTriSource *source;
+  Lanes *factor; /* stored D, W = D^-1 U, L, bs x bs each, row by row; NULL with a source */
+  Lanes *work;   /* per thread */
+  size_t nwork, rows;
+  void *block; /* allocation behind factor and work */
+  PetscObjectState nonzerostate;
+} BlockTri;
+
+/* A = L U in place without pivoting; the diagonal keeps the inverse pivots. */
+static inline __attribute__((always_inline)) void LU(const int bs, Lanes *A)
+{
+  for (int k = 0; k < bs; k++) {
+    const Lanes inv = 1.0 / A[bs * k + k];
+
+    A[bs * k + k] = inv;
+    for (int i = k + 1; i < bs; i++) {
+      const Lanes l = A[bs * i + k] * inv;
+
+      A[bs * i + k] = l;
+      for (int j = k + 1; j < bs; j++) A[bs * i + j] -= l * A[bs * k + j];
+    }
+  }
+}
+
+/* X := A^-1 X, nx right-hand sides in row-major X. */
+static inline __attribute__((always_inline)) void Solve(const int bs, const int nx, const Lanes *A, Lanes *X)
+{
+  for (int i = 1; i < bs; i++)
+    for (int k = 0; k < i; k++)
+      for (int c = 0; c < nx; c++) X[nx * i + c] -= A[bs * i + k] * X[nx * k + c];
+  for (int i = bs - 1; i >= 0; i--) {
+    for (int k = i + 1; k < bs; k++)
+      for (int c = 0; c < nx; c++) X[nx * i + c] -= A[bs * i + k] * X[nx * k + c];
+    for (int c = 0; c < nx; c++) X[nx * i + c] *= A[bs * i + i];
+  }
+}
+
+/* C -= A B, or A^T B */
+static inline __attribute__((always_inline)) void Subtract(const int bs, const int nx, const Lanes *A, int transposed,
+                                                           const Lanes *B, Lanes *C)
+{
+  for (int i = 0; i < bs; i++)
+    for (int k = 0; k < bs; k++) {
+      const Lanes a = transposed ? A[bs * k + i] : A[bs * i + k];
+
+      for (int c = 0; c < nx; c++) C[nx * i + c] -= a * B[nx * k + c];
+    }
+}
+
+static inline __attribute__((always_inline)) void Gather(const int bs, const Batch *b, PetscInt row, const PetscScalar *x,
+                                                         Lanes *y)
+{
+  for (int i = 0; i < BLOCKTRI_LANES; i++) {
+    const PetscScalar *s = x + (b->first[i] + row) * bs;
+
+    if (row < b->length[i])
+      for (int c = 0; c < bs; c++) y[c][i] = s[c];
+    else
+      for (int c = 0; c < bs; c++) y[c][i] = 0;
+  }
+}
+
+static inline __attribute__((always_inline)) void Scatter(const int bs, const Batch *b, PetscInt row, const Lanes *y,
+                                                          PetscScalar *x)
+{
+  for (int i = 0; i < BLOCKTRI_LANES; i++)
+    if (row < b->length[i])
+      for (int c = 0; c < bs; c++) x[(b->first[i] + row) * bs + c] = y[c][i];
+}
+
+/* One batch, blocks made by the source: elimination and forward sweep together, then the backward sweep. */
+static inline __attribute__((always_inline)) void FusedBatch(const int bs, const BlockTriSource *s, const Batch *b, Lanes *work,
+                                                             const PetscScalar *x, PetscScalar *y)
+{
+  const PetscInt n = b->nrows, m = bs * bs;
+  Lanes *D = work, *U = D + n * m, *z = U + n * m, *L = z + n * bs;
+
+  s->fill(s->ctx, b->chain, n, D, U);
+  Gather(bs, b, 0, x, z);
+  for (PetscInt j = 0; j < n; j++) {
+    LU(bs, D + j * m);
+    Solve(bs, 1, D + j * m, z + j * bs);
+    if (j + 1 == n) break;
+    for (PetscInt i = 0; i < m; i++) L[i] = U[j * m + i]; /* the block below is its transpose */
+    Solve(bs, bs, D + j * m, U + j * m);
+    Subtract(bs, bs, L, 1, U + j * m, D + (j + 1) * m);
+    Gather(bs, b, j + 1, x, z + (j + 1) * bs);
+    Subtract(bs, 1, L, 1, z + j * bs, z + (j + 1) * bs);
+  }
+  for (PetscInt j = n - 1; j >= 0; j--) {
+    if (j + 1 < n) Subtract(bs, 1, U + j * m, 0, z + (j + 1) * bs, z + j * bs);
+    Scatter(bs, b, j, z + j * bs, y);
+  }
+}
+
+static inline __attribute__((always_inline)) void FactorBatch(const int bs, const Batch *b, Lanes *factor)
+{
+  const PetscInt m = bs * bs;
+
+  for (PetscInt j = 0; j < b->nrows; j++) {
+    Lanes *D = factor + 3 * m * j, *U = D + m, *L = U + m;
+
+    LU(bs, D);
+    if (j + 1 == b->nrows) break;
+    Solve(bs, bs, D, U);
+    Subtract(bs, bs, L, 0, U, D + 3 * m);
+  }
+}
+
+static inline __attribute__((always_inline)) void SolveBatch(const int bs, const Batch *b, const Lanes *factor, Lanes *z,
+                                                             const PetscScalar *x, PetscScalar *y)
+{
+  const PetscInt m = bs * bs, n = b->nrows;
+
+  for (PetscInt j = 0; j < n; j++) {
+    const Lanes *D = factor + 3 * m * j;
+
+    Gather(bs, b, j, x, z + j * bs);
+    if (j) Subtract(bs, 1, D - m, 0, z + (j - 1) * bs, z + j * bs);
+    Solve(bs, 1, D, z + j * bs);
+  }
+  for (PetscInt j = n - 1; j >= 0; j--) {
+    if (j + 1 < n) Subtract(bs, 1, factor + 3 * m * j + m, 0, z + (j + 1) * bs, z + j * bs);
+    Scatter(bs, b, j, z + j * bs, y);
+  }
+}
+
+/* The block sizes of beams are compiled for themselves. */
+#define DISPATCH(bs, call6, call12, calln)                                                                                       \
+  do {                                                                                                                           \
+    if ((bs) == 6)                                                                                                               \
+      call6;                                                                                                                     \
+    else if ((bs) == 12)                                                                                                         \
+      call12;                                                                                                                    \
+    else                                                                                                                         \
+      calln;                                                                                                                     \
+  } while (0)
+
+static int Thread(void)
+{
+#if defined(_OPENMP)
+  return omp_get_thread_num();
+#else
+  return 0;
+#endif
+}
+
+static PetscErrorCode GetContext(PC pc, BlockTri **t)
+{
+  PetscContainer c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectQuery((PetscObject)pc, "PCBlockTri", (PetscObject *)&c));
+  PetscCheck(c, PetscObjectComm((PetscObject)pc), PETSC_ERR_PLIB, "PCBLOCKTRI lost its data");
+  PetscCall(PetscContainerGetPointer(c, (void **)t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Reset(BlockTri *t)
+{
+  free(t->batches);
+  free(t->first);
+  free(t->length);
+  free(t->block);
+  t->batches = NULL;
+  t->first = t->length = NULL;
+  t->block = NULL;
+  t->factor = t->work = NULL;
+}
+
+/* Chains of a stored matrix: block rows that couple to the next one. */
+static PetscErrorCode FindChains(Mat P, BlockTri *t)
+{
+  PetscInt rows, nb, n = 0, lastlinked = -1;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetSize(P, &rows, NULL));
+  nb = rows / t->bs;
+  t->first = malloc(sizeof(PetscInt) * (size_t)nb);
+  t->length = malloc(sizeof(PetscInt) * (size_t)nb);
+  PetscCheck(t->first && t->length, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %" PetscInt_FMT " block rows", nb);
+  for (PetscInt j = 0; j < nb; j++) {
+    PetscBool linked = lastlinked == j ? PETSC_TRUE : PETSC_FALSE;
+
+    for (PetscInt r = 0; r < t->bs; r++) {
+      const PetscInt *cols;
+      PetscInt nc;
+
+      PetscCall(MatGetRow(P, t->bs * j + r, &nc, &cols, NULL));
+      for (PetscInt c = 0; c < nc; c++) {
+        PetscInt k = cols[c] / t->bs;
+
+        PetscCheck(k >= j - 1 && k <= j + 1, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+                   "PCBLOCKTRI needs a block-tridiagonal matrix; block row %" PetscInt_FMT " couples to %" PetscInt_FMT, j, k);
+        if (k == j - 1) linked = PETSC_TRUE;
+        if (k == j + 1) lastlinked = j + 1;
+      }
+      PetscCall(MatRestoreRow(P, t->bs * j + r, &nc, &cols, NULL));
+    }
+    if (linked)
+      t->length[n - 1]++;
+    else {
+      t->first[n] = j;
+      t->length[n++] = 1;
+    }
+  }
+  t->nchains = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const PetscInt *sort_length; /* guarded: set-up runs on one thread */
+
+static int LongestFirst(const void *a, const void *b)
+{
+  PetscInt i = *(const PetscInt *)a, j = *(const PetscInt *)b;
+
+  if (sort_length[i] != sort_length[j]) return sort_length[i] < sort_length[j] ? 1 : -1;
+  return i < j ? -1 : 1;
+}
+
+/* Chains of similar length share a batch, so that few lanes idle. */
+static PetscErrorCode MakeBatches(BlockTri *t)
+{
+  const PetscInt n = t->source ? t->source->nchains : t->nchains;
+  const PetscInt *first = t->source ? t->source->first : t->first, *length = t->source ? t->source->length : t->length;
+  PetscInt *order;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &order));
+  for (PetscInt i = 0; i < n; i++) order[i] = i;
+  sort_length = length;
+  qsort(order, (size_t)n, sizeof(PetscInt), LongestFirst);
+  t->nbatches = (n + BLOCKTRI_LANES - 1) / BLOCKTRI_LANES;
+  t->batches = malloc(sizeof(Batch) * (size_t)t->nbatches);
+  PetscCheck(t->batches, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %" PetscInt_FMT " batches", t->nbatches);
+  t->maxrows = 0;
+  t->rows = 0;
+  for (PetscInt k = 0; k < t->nbatches; k++) {
+    Batch *b = &t->batches[k];
+
+    b->nrows = 0;
+    for (PetscInt i = 0; i < BLOCKTRI_LANES; i++) {
+      PetscInt c = BLOCKTRI_LANES * k + i < n ? order[BLOCKTRI_LANES * k + i] : -1;
+
+      b->chain[i] = c;
+      b->first[i] = c < 0 ? 0 : first[c];
+      b->length[i] = c < 0 ? 0 : length[c];
+      b->nrows = PetscMax(b->nrows, b->length[i]);
+    }
+    b->offset = t->rows;
+    t->rows += (size_t)b->nrows;
+    t->maxrows = PetscMax(t->maxrows, b->nrows);
+  }
+  PetscCall(PetscFree(order));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Blocks of one batch from a stored matrix into D, U, L. */
+static PetscErrorCode Extract(Mat P, BlockTri *t, const Batch *b)
+{
+  const PetscInt bs = t->bs, m = bs * bs;
+  Lanes *factor = t->factor + 3 * (size_t)m * b->offset;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 3 * m * b->nrows; i++) factor[i] = (Lanes){0};
+  for (PetscInt i = 0; i < BLOCKTRI_LANES; i++)
+    for (PetscInt j = 0; j < b->nrows; j++) {
+      Lanes *D = factor + 3 * m * j;
+
+      for (PetscInt r = 0; r < bs; r++) {
+        const PetscInt *cols, row = b->first[i] + j;
+        const PetscScalar *vals;
+        PetscInt nc;
+
+        if (j >= b->length[i]) {
+          D[bs * r + r][i] = 1;
+          continue;
+        }
+        PetscCall(MatGetRow(P, row * bs + r, &nc, &cols, &vals));
+        for (PetscInt c = 0; c < nc; c++) {
+          PetscInt k = cols[c] / bs - row, q = bs * r + cols[c] % bs;
+
+          if (k == 0)
+            D[q][i] = vals[c];
+          else if (k == 1)
+            D[m + q][i] = vals[c];
+          else
+            D[2 * m - 3 * m + q][i] = vals[c]; /* L of the row above */
+        }
+        PetscCall(MatRestoreRow(P, row * bs + r, &nc, &cols, &vals));
+      }
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Allocate(BlockTri *t)
+{
+  const size_t m = (size_t)(t->bs * t->bs), maxrows = (size_t)t->maxrows, factors = t->source ? 0 : 3 * m * t->rows;
+
+  PetscFunctionBegin;
+#if defined(_OPENMP)
+  t->nthreads = omp_get_max_threads();
+#else
+  t->nthreads = 1;
+#endif
+  t->nwork = maxrows * (2 * m + (size_t)t->bs) + m;
+  t->block = aligned_alloc(sizeof(Lanes), sizeof(Lanes) * (factors + (size_t)t->nthreads * t->nwork));
+  PetscCheck(t->block, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %g MB",
+             (double)(factors + (size_t)t->nthreads * t->nwork) * sizeof(Lanes) / 1e6);
+  t->work = (Lanes *)t->block;
+  t->factor = factors ? t->work + (size_t)t->nthreads * t->nwork : NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PCSetUp_BlockTri(PC pc)
+{
+  BlockTri *t;
+  Mat P;
+  PetscContainer c;
+  PetscObjectState state;
+  const BlockTriSource *source = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(GetContext(pc, &t));
+  PetscCall(PCGetOperators(pc, NULL, &P));
+  PetscCall(PetscObjectQuery((PetscObject)P, "MatBlockTriSource", (PetscObject *)&c));
+  if (c) PetscCall(PetscContainerGetPointer(c, (void **)&source));
+  PetscCall(MatGetNonzeroState(P, &state));
+  if (!t->batches || source != t->source || state != t->nonzerostate) {
+    Reset(t);
+    t->source = source;
+    t->nonzerostate = state;
+    PetscCall(MatGetBlockSize(P, &t->bs));
+    if (!source) PetscCall(FindChains(P, t));
+    PetscCall(MakeBatches(t));
+    PetscCall(Allocate(t));
+  }
+  if (t->source) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < t->nbatches; k++) PetscCall(Extract(P, t, &t->batches[k]));
+#pragma omp parallel for schedule(static)
+  for (PetscInt k = 0; k < t->nbatches; k++) {
+    const Batch *b = &t->batches[k];
+    Lanes *f = t->factor + 3 * (size_t)(t->bs * t->bs) * b->offset;
+
+    DISPATCH(t->bs, FactorBatch(6, b, f), FactorBatch(12, b, f), FactorBatch((int)t->bs, b, f));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PCApply_BlockTri(PC pc, Vec X, Vec Y)
+{
+  BlockTri *t;
+  const PetscScalar *x;
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  PetscCall(GetContext(pc, &t));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(Y, &y));
+#pragma omp parallel for schedule(static) num_threads(t->nthreads)
+  for (PetscInt k = 0; k < t->nbatches; k++) {
+    const Batch *b = &t->batches[k];
+    Lanes *w = t->work + (size_t)Thread() * t->nwork;
+
+    if (t->source)
+      DISPATCH(t->bs, FusedBatch(6, t->source, b, w, x, y), FusedBatch(12, t->source, b, w, x, y),
+               FusedBatch((int)t->bs, t->source, b, w, x, y));
+    else {
+      const Lanes *f = t->factor + 3 * (size_t)(t->bs * t->bs) * b->offset;
+
+      DISPATCH(t->bs, SolveBatch(6, b, f, w, x, y), SolveBatch(12, b, f, w, x, y), SolveBatch((int)t->bs, b, f, w, x, y));
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PCView_BlockTri(PC pc, PetscViewer viewer)
+{
+  BlockTri *t;
+
+  PetscFunctionBegin;
+  PetscCall(GetContext(pc, &t));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "block size %" PetscInt_FMT ", batches of %d chains: %" PetscInt_FMT
+                                   ", longest chain %" PetscInt_FMT ", threads %" PetscInt_FMT ", %s\n",
+                                   t->bs, BLOCKTRI_LANES, t->nbatches, t->maxrows, t->nthreads,
+                                   t->source ? "eliminated while assembled" : "factors stored"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PCDestroy_BlockTri(PC pc)
+{
+  BlockTri *t;
+
+  PetscFunctionBegin;
+  PetscCall(GetContext(pc, &t));
+  Reset(t);
+  PetscCall(PetscFree(t));
+  PetscCall(PetscObjectCompose((PetscObject)pc, "PCBlockTri", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PCSHELL under a name of its own: a PC can be built from the public interface in no other way. */
+static PetscErrorCode PCCreate_BlockTri(PC pc)
+{
+  PetscContainer c;
+  BlockTri *t;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&t));
+  PetscCall(PetscContainerCreate(PetscObjectComm((PetscObject)pc), &c));
+  PetscCall(PetscContainerSetPointer(c, t));
+  PetscCall(PetscObjectCompose((PetscObject)pc, "PCBlockTri", (PetscObject)c));
+  PetscCall(PetscContainerDestroy(&c));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetSetUp(pc, PCSetUp_BlockTri));
+  PetscCall(PCShellSetApply(pc, PCApply_BlockTri));
+  PetscCall(PCShellSetView(pc, PCView_BlockTri));
+  PetscCall(PCShellSetDestroy(pc, PCDestroy_BlockTri));
+  PetscCall(PetscObjectChangeTypeName((PetscObject)pc, PCBLOCKTRI));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PCBlockTriRegister(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PCRegister(PCBLOCKTRI, PCCreate_BlockTri));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MatBlockTriSetSource(Mat P, const BlockTriSource *source)
+{
+  PetscContainer c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscContainerCreate(PetscObjectComm((PetscObject)P), &c));
+  PetscCall(PetscContainerSetPointer(c, (void *)source));
+  PetscCall(PetscObjectCompose((PetscObject)P, "MatBlockTriSource", (PetscObject)c));
+  PetscCall(PetscContainerDestroy(&c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
