@@ -1,2 +1,11 @@
 frond_test(test_couple_transfer SOURCES test_couple_transfer.c LABELS unit)
 frond_test(test_couple_hydrostatic SOURCES test_couple_hydrostatic.c LABELS validation)
+frond_test(test_couple_momentum SOURCES test_couple_momentum.c LABELS unit LIBS OpenMP::OpenMP_C)
+
+find_program(FROND_TEST_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+add_test(NAME couple_cantilever COMMAND ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/couple_cantilever.py
+  $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/couple_cantilever ${PROJECT_SOURCE_DIR})
+set_tests_properties(couple_cantilever PROPERTIES LABELS validation TIMEOUT 600 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+add_test(NAME couple_cantilever_fine COMMAND ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/couple_cantilever.py
+  $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/couple_cantilever_fine ${PROJECT_SOURCE_DIR} 0.02)
+set_tests_properties(couple_cantilever_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
