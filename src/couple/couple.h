@@ -38,7 +38,8 @@ typedef struct {
   PetscErrorCode (*applyforces)(CoupleSurface, const PetscReal *f, CoupleAudit *audit);
   /* Integrate to time t. Surfaces that share a solver share the call: the solver advances once. */
   PetscErrorCode (*advance)(CoupleSurface, PetscReal t);
-  /* Optional: linear momentum p (kg m/s) and the forces now (N) that do not come from the fluid, of weight and of supports. */
+  /* Optional: linear momentum p (kg m/s) and the mean forces over the last step (N) that do not come from the fluid, of weight
+   * and of supports. */
   PetscErrorCode (*momentum)(CoupleSurface, PetscReal p[3], PetscReal weight[3], PetscReal support[3]);
   /* Optional. */
   PetscErrorCode (*view)(CoupleSurface, PetscViewer);

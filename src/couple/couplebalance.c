@@ -1,7 +1,7 @@
 /* couplebalance.c - linear momentum of fluid and structures against the impulses that went in. */
 #include "coupleimpl.h"
 
-static PetscErrorCode Momenta(Couple c, PetscReal fluid[3], PetscReal structure[3], PetscBool forces)
+static PetscErrorCode Momenta(Couple c, PetscReal fluid[3], PetscReal structure[3])
 {
   SphSums sums;
 
@@ -18,10 +18,6 @@ static PetscErrorCode Momenta(Couple c, PetscReal fluid[3], PetscReal structure[
     PetscCall((*s->surface->ops.momentum)(s->surface, p, weight, support));
     for (int k = 0; k < 3; k++) {
       structure[k] += p[k];
-      if (forces) {
-        s->weight[k] = weight[k];
-        s->support[k] = support[k];
-      }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -33,12 +29,12 @@ PetscErrorCode CoupleBalanceStart(Couple c)
 
   PetscFunctionBegin;
   c->left = -1;
-  PetscCall(Momenta(c, fluid, structure, PETSC_TRUE));
+  PetscCall(Momenta(c, fluid, structure));
   for (int k = 0; k < 3; k++) c->p0[k] = fluid[k] + structure[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Impulses of one step: body force and held surfaces exactly, weight of the step, supports by the trapezoidal rule. */
+/* Impulses of one step: body force and held surfaces exactly, weight and supports as the structure gives them for the step. */
 PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
 {
   CoupleBalance *b = &c->balance;
@@ -65,9 +61,7 @@ PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
     PetscCall((*s->surface->ops.momentum)(s->surface, p, weight, support));
     for (int k = 0; k < 3; k++) {
       b->body[k] += dt * weight[k];
-      b->support[k] += 0.5 * dt * (support[k] + s->support[k]);
-      s->weight[k] = weight[k];
-      s->support[k] = support[k];
+      b->support[k] += dt * support[k];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -84,7 +78,7 @@ PetscErrorCode CoupleGetBalance(Couple c, CoupleBalance *balance)
   CoupleBalance *b = &c->balance;
 
   PetscFunctionBegin;
-  PetscCall(Momenta(c, b->fluid, b->structure, PETSC_FALSE));
+  PetscCall(Momenta(c, b->fluid, b->structure));
   b->scale = 0.0;
   for (int k = 0; k < 3; k++) {
     b->residual[k] = b->fluid[k] + b->structure[k] - c->p0[k] - b->body[k] - b->support[k] - b->wall[k];

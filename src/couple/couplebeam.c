@@ -24,6 +24,7 @@ typedef struct {
   /* of the last kinematics call */
   PetscReal *r, *t, *len, *o, *v; /* per disk: axis point, tangent (3), |r_x|; per marker: offset, velocity (3) */
   PetscReal *e, *ed;              /* nodal coordinates and velocities of this beam, (elements + 1) x 6 */
+  PetscReal reaction[2][3];       /* of all supports at the ends of the last step, N; beam 0 only */
 } Beam;
 
 /* State of this beam's nodes extrapolated by dt: e, e', and (shared) e''. */
@@ -217,6 +218,10 @@ static PetscErrorCode Advance_Beam(CoupleSurface s, PetscReal t)
   PetscFunctionBegin;
   PetscCall(AncfGetState(b->ancf, &now, NULL, NULL, NULL));
   if (now < t) PetscCall(AncfAdvance(b->ancf, t));
+  if (b->beam == 0) {
+    PetscCall(PetscArraycpy(b->reaction[0], b->reaction[1], 3));
+    PetscCall(AncfGetReaction(b->ancf, b->reaction[1]));
+  }
   PetscCall(Extrapolate(b, 0.0, &edd));
   for (PetscInt d = 0; d < b->ndisk; d++) {
     DiskMotion(b, d, edd, w, alpha, rd, rdd);
@@ -240,7 +245,7 @@ static PetscErrorCode Momentum_Beam(CoupleSurface s, PetscReal p[3], PetscReal w
     for (int k = 0; k < 3; k++) p[k] += m * (0.5 * (v[k] + v[6 + k]) + b->l / 12.0 * (v[3 + k] - v[9 + k]));
   if (b->beam == 0) {
     PetscCall(AncfGetWeight(b->ancf, weight));
-    PetscCall(AncfGetReaction(b->ancf, support));
+    for (int k = 0; k < 3; k++) support[k] = 0.5 * (b->reaction[0][k] + b->reaction[1][k]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -352,6 +357,7 @@ static PetscErrorCode Place(Beam *b, const AncfBeamSpec *spec, const Section *c)
       b->depth[i] = PetscMin(c->depth[j], ends);
     }
   }
+  if (b->beam == 0) PetscCall(AncfGetReaction(b->ancf, b->reaction[1]));
   PetscCall(Extrapolate(b, 0.0, &e));
   for (PetscInt d = 0; d < b->ndisk; d++) {
     DiskMotion(b, d, e, w, alpha, rd, rdd);

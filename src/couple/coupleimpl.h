@@ -18,7 +18,6 @@ typedef struct {
   PetscInt group, n;
   PetscReal *x, *v, *a, *f; /* n x 3 */
   CoupleAudit audit;
-  PetscReal weight[3], support[3]; /* forces at the last time, for the balance */
 } CoupleSlot;
 
 struct _p_Couple {

@@ -10,7 +10,10 @@ typedef struct {
   PetscReal *xb, *x0, *volume, *depth; /* body frame and rest positions (n x 3), volumes, depths (n) */
   PetscReal X[3], V[3], omega[3];      /* state of the last kinematics call */
   PetscReal *x, *v;                    /* marker state of that call, n x 3 */
-  PetscReal F[3];                      /* fluid force of the last step */
+  PetscReal F[3], T[3];                /* fluid force and torque of the last step */
+  PetscReal A[3], alpha[3], dt;        /* mean accelerations over the last step, its length */
+  PetscReal V0[3], omega0[3], t0;      /* at the end of the last step */
+  PetscBool jointed;
 } Body;
 
 static PetscErrorCode GetMarkers_Rigid(CoupleSurface s, PetscInt *n, const PetscReal **x, const PetscReal **volume,
@@ -49,6 +52,10 @@ static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal 
   PetscFunctionBegin;
   PetscCall(RigidGetState(b->rigid, b->body, b->X, q, b->V, b->omega));
   PetscCall(RigidGetAcceleration(b->rigid, b->body, A, alpha));
+  for (int k = 0; b->jointed && b->dt > 0.0 && k < 3; k++) {
+    A[k] = b->A[k];
+    alpha[k] = b->alpha[k];
+  }
   RigidRotationMatrix(q, R);
   for (int k = 0; k < 3; k++) {
     turn[k] = dt * (b->omega[k] + 0.5 * dt * alpha[k]);
@@ -73,12 +80,18 @@ static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes back what the last step added: loads that the host gave the body stay. */
 static PetscErrorCode ZeroLoads_Rigid(CoupleSurface s)
 {
   Body *b = (Body *)s->ctx;
 
   PetscFunctionBegin;
-  if (b->body == 0) PetscCall(RigidZeroLoads(b->rigid));
+  for (int k = 0; k < 3; k++) {
+    b->F[k] = -b->F[k];
+    b->T[k] = -b->T[k];
+  }
+  PetscCall(RigidAddLoad(b->rigid, b->body, b->F, b->T));
+  for (int k = 0; k < 3; k++) b->F[k] = b->T[k] = 0.0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,11 +116,13 @@ static PetscErrorCode ApplyForces_Rigid(CoupleSurface s, const PetscReal *f, Cou
     audit->force_lost[k] = audit->force[k] - F[k];
     audit->moment_lost[k] = audit->moment[k] - (XF[k] + T[k]);
     b->F[k] = F[k];
+    b->T[k] = T[k];
   }
   audit->power_lost = audit->power - (CoupleDot(F, b->V) + CoupleDot(T, b->omega));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Joint forces are no part of RigidGetAcceleration(): jointed bodies go by their mean acceleration over the step. */
 static PetscErrorCode Advance_Rigid(CoupleSurface s, PetscReal t)
 {
   Body *b = (Body *)s->ctx;
@@ -116,10 +131,20 @@ static PetscErrorCode Advance_Rigid(CoupleSurface s, PetscReal t)
   PetscFunctionBegin;
   PetscCall(RigidGetTime(b->rigid, &now));
   if (now < t) PetscCall(RigidAdvance(b->rigid, t));
+  b->dt = t - b->t0;
+  PetscCall(RigidGetState(b->rigid, b->body, NULL, NULL, b->A, b->alpha));
+  for (int k = 0; k < 3; k++) {
+    const PetscReal V = b->A[k], w = b->alpha[k];
+    b->A[k] = (V - b->V0[k]) / b->dt;
+    b->alpha[k] = (w - b->omega0[k]) / b->dt;
+    b->V0[k] = V;
+    b->omega0[k] = w;
+  }
+  b->t0 = t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The weight is what accelerates the body beyond the fluid's force: M A = F + weight. */
+/* Weight: what accelerates the body beyond the fluid's force by itself; support: what joints add to that. */
 static PetscErrorCode Momentum_Rigid(CoupleSurface s, PetscReal p[3], PetscReal weight[3], PetscReal support[3])
 {
   const Body *b = (const Body *)s->ctx;
@@ -131,7 +156,7 @@ static PetscErrorCode Momentum_Rigid(CoupleSurface s, PetscReal p[3], PetscReal 
   for (int k = 0; k < 3; k++) {
     p[k] = b->mass * V[k];
     weight[k] = b->mass * A[k] - b->F[k];
-    support[k] = 0.0;
+    support[k] = b->jointed ? b->mass * (b->A[k] - A[k]) : 0.0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -168,6 +193,7 @@ PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim
   const CoupleSurfaceOps ops = {GetMarkers_Rigid, Kinematics_Rigid, ZeroLoads_Rigid, ApplyForces_Rigid,
                                 Advance_Rigid,    Momentum_Rigid,   View_Rigid,      Destroy_Rigid};
   RigidBodySpec spec;
+  PetscInt joints;
   PetscReal *a;
   char name[64];
   Body *b;
@@ -178,6 +204,10 @@ PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim
   b->rigid = rigid;
   b->body = body;
   b->mass = spec.mass;
+  PetscCall(RigidGetNumJoints(rigid, &joints));
+  b->jointed = joints > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(RigidGetState(rigid, body, NULL, NULL, b->V0, b->omega0));
+  PetscCall(RigidGetTime(rigid, &b->t0));
   PetscCall(RigidFillMarkers(&spec, dim, dp, depthmax, &b->n, &b->xb, &b->volume, &b->depth));
   PetscCall(PetscMalloc3(3 * b->n, &b->x0, 3 * b->n, &b->x, 3 * b->n, &b->v));
   PetscCall(PetscSNPrintf(name, sizeof(name), "body_%" PetscInt_FMT, body));
