@@ -9,3 +9,6 @@ set_tests_properties(couple_cantilever PROPERTIES LABELS validation TIMEOUT 600 
 add_test(NAME couple_cantilever_fine COMMAND ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/couple_cantilever.py
   $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/couple_cantilever_fine ${PROJECT_SOURCE_DIR} 0.02)
 set_tests_properties(couple_cantilever_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+frond_test(test_couple_cylinder SOURCES test_couple_cylinder.c LABELS validation)
+add_test(NAME test_couple_cylinder_fine COMMAND test_couple_cylinder -dp 0.125,0.0833333333333,0.0625)
+set_tests_properties(test_couple_cylinder_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
