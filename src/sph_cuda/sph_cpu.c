@@ -94,7 +94,7 @@ static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
     cpu->listcap = most + most / 64 * 16;
     cpu->listbytes = ((size_t)cpu->listcap * (SPH_NQ_MAX * real + sizeof(int)) + 127) / 64 * 64;
     PetscCall(PetscFree(cpu->lists));
-    PetscCall(PetscMalloc(cpu->listbytes * (size_t)cpu->threads, &cpu->lists));
+    PetscCall(PetscMalloc(cpu->listbytes * (size_t)cpu->threads + 64, &cpu->lists));
   }
   if (!cpu->q) {
     cpu->stride = (sph->n + 31) / 16 * 16;
@@ -292,5 +292,5 @@ static PetscErrorCode Push_CPU(Sph sph)
   return PETSC_SUCCESS;
 }
 
-const SphOps SphOps_CPU = {SetUp_CPU,  Build_CPU, Rates_CPU,  HalfStep_CPU, FullStep_CPU, Reinit_CPU,
-                           Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU,     Push_CPU,     Destroy_CPU};
+const SphOps SphOps_CPU = {SetUp_CPU, Build_CPU,  Rates_CPU, HalfStep_CPU, FullStep_CPU, Reinit_CPU, Motion_CPU,
+                           Force_CPU, Limits_CPU, Pull_CPU,  Push_CPU,     Destroy_CPU,  NULL};

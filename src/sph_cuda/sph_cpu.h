@@ -32,7 +32,7 @@ typedef struct {
   PetscInt threads;
   void *q; /* nq x stride values in the working precision */
   PetscInt nq, stride;
-  void *lists; /* per thread: SPH_NQ_MAX x listcap values, listcap indices */
+  void *lists; /* per thread: SPH_NQ_MAX x listcap values, listcap indices, from the first multiple of 64 bytes on */
   size_t listbytes;
   PetscBool built;
 } SphCpu;

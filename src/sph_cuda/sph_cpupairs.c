@@ -336,7 +336,7 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
   }
 #pragma omp parallel num_threads((int)cpu->threads)
   {
-    sphreal *mem = (sphreal *)((char *)cpu->lists + (size_t)omp_get_thread_num() * cpu->listbytes);
+    sphreal *mem = (sphreal *)(((uintptr_t)cpu->lists + 63) / 64 * 64 + (size_t)omp_get_thread_num() * cpu->listbytes);
     List l;
     for (int k = 0; k < SPH_NQ_MAX; k++) l.q[k] = mem + (size_t)k * (size_t)cpu->listcap;
     l.scratch = (int *)(mem + (size_t)SPH_NQ_MAX * (size_t)cpu->listcap);

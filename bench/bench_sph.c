@@ -1,0 +1,262 @@
+/*
+  bench_sph.c - speed of the SPH engine: a three-dimensional dam break.
+
+  Tank 1.6 x 0.67 x 0.4 m, open on top, one layer of wall markers; column 0.4 x 0.67 x 0.3 m at x = 0; h = sqrt(3) dp (about 170
+  neighbours), rho0 = 1000 kg/m^3, gamma = 7, g = 9.81 m/s^2, c_s = 34.3 m/s, artificial viscosity 0.1, Wendland or cubic spline.
+  dp = 0.013, 0.008, 0.0049 m give 53 k, 203 k, 800 k markers.
+
+  The unit is a marker-evaluation: one right-hand side for one marker, re-sorting, wall markers, time step and integration
+  included. Every figure is the best of -reps repetitions of -steps steps by the wall clock; the same by processor time is shown
+  for machines that are shared. Figures of DualSPHysics 5.4 for the same case (built -O3 -march=native -ffast-math; two threads of
+  a Zen 4 class machine, median of 3) are compiled in.
+
+    bench_sph                                   the table at 203 k markers
+    bench_sph -sizes 0.013,0.008,0.0049,0.00315 -full
+    bench_sph -fill 0.0027                      time to fill, sort and set up only
+    bench_sph -sph_kernel cubic -one            one run with any -sph_ option
+*/
+#include "sph_cuda/sph.h"
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+typedef struct {
+  PetscReal dp;
+  SphKernelType kernel;
+  SphDiffusionType diffusion;
+  SphIntegratorType integrator;
+  SphPrecision precision;
+  int threads;
+} Case;
+
+typedef struct {
+  PetscInt n;
+  PetscReal wall, cpu, bytes, setup; /* evaluations per second, per processor second; per marker; s */
+} Result;
+
+/* DualSPHysics 5.4, two threads: marker-evaluations/s in millions; 0 where there is no figure. */
+typedef struct {
+  PetscReal dp;
+  SphDiffusionType diffusion;
+  SphIntegratorType integrator;
+  PetscReal rate;
+} Peer;
+
+static const Peer peers[] = {
+    {0.0080, SPH_DIFFUSION_MOLTENI, SPH_INTEGRATOR_VERLET, 0.53},
+    {0.0080, SPH_DIFFUSION_NONE, SPH_INTEGRATOR_VERLET, 0.82},
+    {0.0049, SPH_DIFFUSION_MOLTENI, SPH_INTEGRATOR_VERLET, 0.50},
+    {0.0080, SPH_DIFFUSION_MOLTENI, SPH_INTEGRATOR_SYMPLECTIC, 0.54},
+    {0.0080, SPH_DIFFUSION_NONE, SPH_INTEGRATOR_SYMPLECTIC, 0.80},
+    {0.0049, SPH_DIFFUSION_MOLTENI, SPH_INTEGRATOR_SYMPLECTIC, 0.50},
+};
+
+static PetscReal PeerRate(const Case *c)
+{
+  for (size_t k = 0; k < sizeof(peers) / sizeof(peers[0]); k++)
+    if (fabs(peers[k].dp - c->dp) < 1e-6 && peers[k].diffusion == c->diffusion && peers[k].integrator == c->integrator)
+      return peers[k].rate;
+  return 0.0;
+}
+
+static double Clock(clockid_t id)
+{
+  struct timespec t;
+  clock_gettime(id, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Memory that the process holds now, bytes. */
+static double Resident(void)
+{
+  long pages = 0, size = 0;
+  FILE *f = fopen("/proc/self/statm", "r");
+  if (!f) return 0.0;
+  if (fscanf(f, "%ld %ld", &size, &pages) != 2) pages = 0;
+  fclose(f);
+  return 4096.0 * (double)pages;
+}
+
+/* Nodes i dp: walls on the planes x = 0, y = 0, z = 0 and at the far ends; fluid at 0.01 dp off them never, a full dp away. */
+static PetscErrorCode AddMarkers(Sph sph, PetscReal dp)
+{
+  const PetscInt n[3] = {(PetscInt)floor(1.6 / dp + 0.5), (PetscInt)floor(0.67 / dp + 0.5), (PetscInt)floor(0.4 / dp + 1e-9) - 1};
+  const PetscInt f[3] = {(PetscInt)floor(0.4 / dp + 0.5), n[1] - 1, (PetscInt)floor(0.3 / dp + 0.5)};
+  const PetscInt nf = f[0] * f[1] * f[2], nw = (n[0] + 1) * (n[1] + 1) * (n[2] + 1) - (n[0] - 1) * (n[1] - 1) * n[2];
+  PetscReal *x, *p, *vol, *depth;
+  PetscInt m = 0, group;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(3 * PetscMax(nf, nw), &x, nf, &p, nw, &vol, nw, &depth));
+  for (PetscInt k = 1; k <= f[2]; k++)
+    for (PetscInt j = 1; j <= f[1]; j++)
+      for (PetscInt i = 1; i <= f[0]; i++) {
+        x[3 * m] = (PetscReal)i * dp;
+        x[3 * m + 1] = (PetscReal)j * dp;
+        x[3 * m + 2] = (PetscReal)k * dp;
+        p[m++] = 1000.0 * 9.81 * (PetscReal)(f[2] - k) * dp;
+      }
+  PetscCall(SphAddFluid(sph, m, x, NULL, p));
+  m = 0;
+  for (PetscInt k = 0; k <= n[2]; k++)
+    for (PetscInt j = 0; j <= n[1]; j++)
+      for (PetscInt i = 0; i <= n[0]; i++) {
+        if (k > 0 && j > 0 && j < n[1] && i > 0 && i < n[0]) continue;
+        x[3 * m] = (PetscReal)i * dp;
+        x[3 * m + 1] = (PetscReal)j * dp;
+        x[3 * m + 2] = (PetscReal)k * dp;
+        vol[m] = dp * dp * dp;
+        depth[m++] = 0.0;
+      }
+  PetscCall(SphAddBoundary(sph, m, x, NULL, vol, depth, &group));
+  PetscCall(PetscFree4(x, p, vol, depth));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Make(const Case *c, Sph *out)
+{
+  const PetscReal lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.6, 0.67, 0.6}, g[3] = {0.0, 0.0, -9.81};
+  Sph sph;
+
+  PetscFunctionBegin;
+  omp_set_num_threads(c->threads);
+  PetscCall(SphCreate(PETSC_COMM_SELF, &sph));
+  PetscCall(SphSetSpacing(sph, c->dp));
+  PetscCall(SphSetSmoothingRatio(sph, sqrt(3.0)));
+  PetscCall(SphSetSoundSpeed(sph, 34.3));
+  PetscCall(SphSetViscosityType(sph, SPH_VISCOSITY_ARTIFICIAL));
+  PetscCall(SphSetArtificialViscosity(sph, 0.1));
+  PetscCall(SphSetDensityDiffusion(sph, c->diffusion, 0.1));
+  PetscCall(SphSetDensityReinit(sph, SPH_REINIT_NONE, 1));
+  PetscCall(SphSetXSPH(sph, 0.0));
+  PetscCall(SphSetKernel(sph, c->kernel));
+  PetscCall(SphSetWall(sph, SPH_WALL_BCE));
+  PetscCall(SphSetIntegrator(sph, c->integrator));
+  PetscCall(SphSetPrecision(sph, c->precision));
+  PetscCall(SphSetBodyForce(sph, g));
+  PetscCall(SphSetDomain(sph, lo, hi));
+  PetscCall(SphSetCheckEvery(sph, 100));
+  PetscCall(SphSetFromOptions(sph));
+  PetscCall(AddMarkers(sph, c->dp));
+  PetscCall(SphSetUp(sph));
+  *out = sph;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Steps(Sph sph, PetscInt steps)
+{
+  PetscReal dt;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < steps; s++) {
+    PetscCall(SphComputeTimeStep(sph, &dt));
+    PetscCall(SphStepBegin(sph, dt));
+    PetscCall(SphStepEnd(sph));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Run(const Case *c, PetscInt warm, PetscInt steps, PetscInt reps, Result *r)
+{
+  const double before = Resident(), t0 = Clock(CLOCK_MONOTONIC);
+  PetscInt nf, nb;
+  PetscReal e0, e1;
+  Sph sph;
+
+  PetscFunctionBegin;
+  PetscCall(Make(c, &sph));
+  r->setup = Clock(CLOCK_MONOTONIC) - t0;
+  PetscCall(SphGetCounts(sph, &nf, &nb, NULL));
+  r->n = nf + nb;
+  r->wall = r->cpu = 0.0;
+  PetscCall(Steps(sph, warm));
+  for (PetscInt k = 0; k < reps; k++) {
+    const double w = Clock(CLOCK_MONOTONIC), p = Clock(CLOCK_PROCESS_CPUTIME_ID);
+    PetscCall(SphGetWork(sph, NULL, &e0));
+    PetscCall(Steps(sph, steps));
+    PetscCall(SphGetWork(sph, NULL, &e1));
+    r->wall = PetscMax(r->wall, (e1 - e0) / (Clock(CLOCK_MONOTONIC) - w));
+    r->cpu = PetscMax(r->cpu, (e1 - e0) / (Clock(CLOCK_PROCESS_CPUTIME_ID) - p));
+  }
+  r->bytes = (Resident() - before) / (PetscReal)r->n;
+  PetscCall(SphDestroy(&sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Row(const Case *c, PetscInt warm, PetscInt steps, PetscInt reps, Result *r)
+{
+  const PetscReal peer = c->threads == 2 ? PeerRate(c) : 0.0;
+
+  PetscFunctionBegin;
+  PetscCall(Run(c, warm, steps, reps, r));
+  printf("%8" PetscInt_FMT "  %-8s  %-9s  %-10s  %-6s  %d   %6.3f  %6.3f  %5.0f", r->n, SphKernelTypes[c->kernel],
+         SphDiffusionTypes[c->diffusion], SphIntegratorTypes[c->integrator], SphPrecisions[c->precision], c->threads,
+         r->wall * 1e-6, r->cpu * 1e-6, r->bytes);
+  if (peer > 0.0) printf("  %5.2f", r->wall * 1e-6 / peer);
+  printf("\n");
+  fflush(stdout);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+  PetscReal sizes[16] = {0.008}, fill = 0.0;
+  PetscInt nsizes = 16, warm = 10, steps = 10, reps = 5;
+  PetscBool full = PETSC_FALSE, one = PETSC_FALSE, set;
+  Case c = {0.008, SPH_KERNEL_WENDLAND, SPH_DIFFUSION_NONE, SPH_INTEGRATOR_VERLET, SPH_PRECISION_SINGLE, omp_get_max_threads()};
+  Result r;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(PetscOptionsGetRealArray(NULL, NULL, "-sizes", sizes, &nsizes, &set));
+  if (!set) nsizes = 1;
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-warm", &warm, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-reps", &reps, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-full", &full, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-one", &one, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-fill", &fill, NULL));
+  if (fill > 0.0) {
+    c.dp = fill;
+    PetscCall(Run(&c, 0, 0, 0, &r));
+    printf("%" PetscInt_FMT " markers: filled, sorted, checked and evaluated once in %.2f s, %.2f us per marker\n", r.n, r.setup,
+           1e6 * r.setup / (PetscReal)r.n);
+    PetscCall(PetscFinalize());
+    return 0;
+  }
+  printf(" markers  kernel    diffusion  integrator  real    thr  M/s wall  M/s cpu  B/marker  x DualSPHysics\n");
+  for (PetscInt s = 0; s < nsizes; s++) {
+    c.dp = sizes[s];
+    if (one) { /* what the options ask for */
+      PetscCall(Run(&c, warm, steps, reps, &r));
+      printf("%8" PetscInt_FMT "  as the options say%28s%d   %6.3f  %6.3f  %5.0f\n", r.n, "", c.threads, r.wall * 1e-6,
+             r.cpu * 1e-6, r.bytes);
+      continue;
+    }
+    for (int t = 1; t <= PetscMax(2, omp_get_num_procs()); t *= 2)
+      for (int k = 1; k >= 0; k--)
+        for (int d = 0; d < 2; d++)
+          for (int i = 0; i < 3; i++) {
+            const SphIntegratorType order[] = {SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC, SPH_INTEGRATOR_RK2};
+            if (!full && i > 0) continue;
+            c.threads = t;
+            c.kernel = (SphKernelType)k;
+            c.diffusion = (SphDiffusionType)d;
+            c.integrator = order[i];
+            PetscCall(Row(&c, warm, steps, reps, &r));
+          }
+    if (s == 0) {
+      c.kernel = SPH_KERNEL_WENDLAND;
+      c.diffusion = SPH_DIFFUSION_NONE;
+      c.integrator = SPH_INTEGRATOR_VERLET;
+      c.precision = SPH_PRECISION_DOUBLE;
+      c.threads = 1;
+      PetscCall(Row(&c, warm, steps, reps, &r));
+      c.precision = SPH_PRECISION_SINGLE;
+    }
+  }
+  PetscCall(PetscFinalize());
+  return 0;
+}
