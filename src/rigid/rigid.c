@@ -5,7 +5,7 @@
 */
 #include "rigidgeometry.h"
 
-PetscLogEvent RIGID_Advance, RIGID_Fill;
+PetscLogEvent RIGID_Advance, RIGID_Fill, RIGID_Contact;
 
 PetscErrorCode RigidRegisterEvents(void)
 {
@@ -18,6 +18,7 @@ PetscErrorCode RigidRegisterEvents(void)
   PetscCall(PetscClassIdRegister("Rigid bodies", &id));
   PetscCall(PetscLogEventRegister("RigidAdvance", id, &RIGID_Advance));
   PetscCall(PetscLogEventRegister("RigidFill", id, &RIGID_Fill));
+  PetscCall(PetscLogEventRegister("RigidContact", id, &RIGID_Contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -30,6 +31,7 @@ PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid)
   (*rigid)->comm = comm;
   (*rigid)->dim = 3;
   (*rigid)->substeps = 1;
+  PetscCall(ShortRangeInit(&(*rigid)->shortrange));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,6 +118,31 @@ PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ShortRangeFromOptions(Rigid rigid, PetscOptionItems *PetscOptionsObject)
+{
+  ShortRange p = rigid->shortrange;
+  PetscReal spacing = rigid->spacing;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsReal("-rigid_lubrication_viscosity", "Viscosity for lubrication between bodies, Pa s (0: none)",
+                             "RigidSetShortRange", p.viscosity, &p.viscosity, NULL));
+  PetscCall(PetscOptionsReal("-rigid_lubrication_cutoff", "Gap Dc beyond which lubrication is left to the fluid, m",
+                             "RigidSetShortRange", p.cutoff, &p.cutoff, NULL));
+  PetscCall(PetscOptionsBool("-rigid_lubrication_kink", "Factor 1/s - 1/Dc as printed in Eqs. 31, 32 (default: smooth at Dc)",
+                             "RigidSetShortRange", p.kink, &p.kink, NULL));
+  PetscCall(PetscOptionsReal("-rigid_roughness", "Gap at which surfaces touch and lubrication is capped, m", "RigidSetShortRange",
+                             p.roughness, &p.roughness, NULL));
+  PetscCall(PetscOptionsReal("-rigid_contact_modulus", "Reduced Young's modulus of Hertz contact, Pa (0: no contact)",
+                             "RigidSetShortRange", p.modulus, &p.modulus, NULL));
+  PetscCall(PetscOptionsReal("-rigid_contact_restitution", "Coefficient of restitution of contact", "RigidSetShortRange",
+                             p.restitution, &p.restitution, NULL));
+  PetscCall(PetscOptionsReal("-rigid_shortrange_spacing", "Distance of surface markers of bodies that are no spheres, m",
+                             "RigidSetShortRangeSpacing", spacing, &spacing, NULL));
+  PetscCall(RigidSetShortRange(rigid, &p));
+  PetscCall(RigidSetShortRangeSpacing(rigid, spacing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode RigidSetFromOptions(Rigid rigid)
 {
   PetscReal g[3] = {rigid->g[0], rigid->g[1], rigid->g[2]}, rho = rigid->rhofluid;
@@ -136,6 +163,7 @@ PetscErrorCode RigidSetFromOptions(Rigid rigid)
   PetscCall(PetscOptionsInt("-rigid_substeps", "Steps of the rigid bodies in one step of the fluid", "RigidSetSubsteps", substeps,
                             &substeps, NULL));
   PetscCall(RigidSetSubsteps(rigid, substeps));
+  PetscCall(ShortRangeFromOptions(rigid, PetscOptionsObject));
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,6 +219,7 @@ PetscErrorCode RigidSetUp(Rigid rigid)
   for (PetscInt i = 0; i < rigid->n; i++) PetscCall(BodySetUp(rigid, i));
   rigid->setup = PETSC_TRUE;
   for (PetscInt j = 0; j < rigid->njoints; j++) PetscCall(RigidJointSetUp(rigid, j));
+  PetscCall(RigidContactSetUp(rigid));
   if (rigid->njoints) {
     PetscCall(RigidSystemCreate(rigid));
     PetscCall(RigidSystemProjectVelocity(rigid));
@@ -244,6 +273,14 @@ PetscErrorCode RigidView(Rigid rigid, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "gravity %g %g %g m/s^2, fluid density %g kg/m^3%s\n", (double)rigid->g[0],
                                    (double)rigid->g[1], (double)rigid->g[2], (double)rigid->rhofluid,
                                    rigid->rhofluid > 0. ? "" : " (full weight)"));
+  if (rigid->contact) {
+    const ShortRange *p = &rigid->shortrange;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "lubrication: viscosity %g Pa s, cutoff %g m%s; roughness %g m\n",
+                                     (double)p->viscosity, (double)p->cutoff, p->kink ? " (with kink)" : "",
+                                     (double)p->roughness));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact: modulus %g Pa, restitution %g; surface markers %g m apart\n",
+                                     (double)p->modulus, (double)p->restitution, (double)rigid->spacing));
+  }
   PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT "\n", rigid->substeps));
   for (PetscInt i = 0; i < rigid->n; i++) PetscCall(BodyView(rigid, i, viewer));
   for (PetscInt j = 0; j < rigid->njoints; j++) {
@@ -262,6 +299,7 @@ PetscErrorCode RigidDestroy(Rigid *rigid)
   if (!*rigid) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < (*rigid)->n; i++) PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
   PetscCall(RigidSystemDestroy(*rigid));
+  PetscCall(RigidContactDestroy(&(*rigid)->contact));
   PetscCall(PetscFree((*rigid)->prefix));
   PetscCall(PetscFree((*rigid)->joint));
   PetscCall(PetscFree((*rigid)->body));
@@ -458,6 +496,27 @@ PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const PetscReal F[3], co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Kick, free flight, kick of all bodies; the short-range forces of each kick are those at its end of the flight. */
+static PetscErrorCode RigidSubstep(Rigid rigid, PetscReal h)
+{
+  PetscBool jointed;
+
+  PetscFunctionBegin;
+  if (rigid->contact) PetscCall(RigidContactForces(rigid, .5 * h));
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    PetscCall(RigidSystemHasBody(rigid, i, &jointed));
+    if (!jointed) PetscCall(RigidBodyBegin(rigid, i, h));
+  }
+  if (rigid->system) PetscCall(RigidSystemBegin(rigid, h));
+  if (rigid->contact) PetscCall(RigidContactForces(rigid, .5 * h));
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    PetscCall(RigidSystemHasBody(rigid, i, &jointed));
+    if (!jointed) RigidBodyEnd(rigid, i, h);
+  }
+  if (rigid->system) PetscCall(RigidSystemEnd(rigid, h));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* From the present time to t (s) in -rigid_substeps steps, see rigidstep.c and rigidconstraint.c; t must not lie in the past. */
 PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
 {
@@ -468,15 +527,7 @@ PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
   PetscCheck(dt >= 0. && !PetscIsInfOrNanReal(t), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "RigidAdvance() to t = %g s: must be >= the present time %g s", (double)t, (double)rigid->t);
   PetscCall(PetscLogEventBegin(RIGID_Advance, 0, 0, 0, 0));
-  for (PetscInt s = 0; s < rigid->substeps; s++) {
-    const PetscReal h = dt / (PetscReal)rigid->substeps;
-    for (PetscInt i = 0; i < rigid->n; i++) {
-      PetscBool jointed;
-      PetscCall(RigidSystemHasBody(rigid, i, &jointed));
-      if (!jointed) PetscCall(RigidBodyAdvance(rigid, i, h));
-    }
-    if (rigid->system) PetscCall(RigidSystemAdvance(rigid, h));
-  }
+  for (PetscInt s = 0; s < rigid->substeps && dt > 0.; s++) PetscCall(RigidSubstep(rigid, dt / (PetscReal)rigid->substeps));
   rigid->t = t;
   rigid->advanced = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(RIGID_Advance, 0, 0, 0, 0));

@@ -9,6 +9,7 @@
 #define RIGID_H
 
 #include "frondsys.h"
+#include "shortrange.h"
 #include <petscviewer.h>
 
 typedef struct _p_Rigid *Rigid;
@@ -183,6 +184,20 @@ FROND_EXTERN PetscErrorCode RigidLumpedSpecInit(RigidLumpedSpec *spec);
 FROND_EXTERN PetscErrorCode RigidAddLumpedBeam(Rigid rigid, const RigidLumpedSpec *spec, PetscInt *body, PetscInt *joint);
 /* Ends of the trunks of a beam whose first body is `body`: (trunks + 1) x 3, m. */
 FROND_EXTERN PetscErrorCode RigidGetLumpedNodes(Rigid rigid, PetscInt body, PetscInt trunks, PetscReal x[]);
+
+/*
+  Short-range forces between bodies, see shortrange.h. Two spheres: Eq. 31. A sphere and any other body: Eq. 31 with the other
+  surface taken as plane. Any two other bodies: Eq. 32 over surface markers about `spacing` apart, and contact of each one's
+  markers with the other's surface. Bodies that share a joint are left alone. Lubrication is for 3D only.
+*/
+FROND_EXTERN PetscErrorCode RigidSetShortRange(Rigid rigid, const ShortRange *p);
+/* Distance of surface markers for bodies that are no spheres, m; needed if there are such. */
+FROND_EXTERN PetscErrorCode RigidSetShortRangeSpacing(Rigid rigid, PetscReal spacing);
+/* Periodic lengths, m; 0 for none: short-range forces act between nearest images. */
+FROND_EXTERN PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3]);
+/* Refuses bodies that overlap, naming both; joined bodies, and pairs of which none is free, are left alone. spacing: see above.
+ */
+FROND_EXTERN PetscErrorCode RigidCheckOverlap(Rigid rigid, PetscReal spacing);
 
 /* Signed distance (m) from a point in the body frame to the surface, negative inside; exact for every shape. */
 FROND_EXTERN PetscReal RigidShapeDistance(const RigidBodySpec *spec, const PetscReal xbody[3]);

@@ -444,20 +444,20 @@ static void FinishJoints(Rigid rigid, PetscReal h)
   }
 }
 
-PetscErrorCode RigidSystemAdvance(Rigid rigid, PetscReal h)
+/* Stage 1 of a step of h > 0. */
+PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
 {
   RigidSystem s = rigid->system;
   PetscBool again = PETSC_TRUE;
 
   PetscFunctionBegin;
-  if (h == 0.) PetscFunctionReturn(PETSC_SUCCESS);
   SystemRows(rigid, s->row0);
   SystemLengths(rigid);
   PetscCall(CheckAssembled(rigid));
   for (PetscInt i = 0; i < rigid->n; i++) {
     if (s->start[i + 1] == s->start[i]) continue;
     PetscCall(RigidBodyCheckLoad(rigid, i));
-    if (rigid->body[i].spec.motion != RIGID_FREE) PetscCall(RigidBodyAdvance(rigid, i, h));
+    if (rigid->body[i].spec.motion != RIGID_FREE) PetscCall(RigidBodyBegin(rigid, i, h));
     s->saved[i] = rigid->body[i];
   }
   ActivateRows(rigid, PETSC_TRUE);
@@ -467,15 +467,24 @@ PetscErrorCode RigidSystemAdvance(Rigid rigid, PetscReal h)
     YieldRows(rigid, &again);
   }
   FinishJoints(rigid, h);
-  SystemWrench(rigid, s->row0, s->lambda, -1); /* what the accelerations are computed from */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stage 2; the multipliers of stage 1 are still in place. */
+PetscErrorCode RigidSystemEnd(Rigid rigid, PetscReal h)
+{
+  RigidSystem s = rigid->system;
+
+  PetscFunctionBegin;
+  SystemWrench(rigid, s->row0, s->lambda, -1); /* goes into the accelerations */
   for (PetscInt i = 0; i < rigid->n; i++) {
     RigidBody *b = &rigid->body[i];
-    if (s->start[i + 1] == s->start[i] || b->spec.motion != RIGID_FREE) continue;
-    for (int k = 0; k < 3; k++) {
-      b->Fused[k] = b->F[k] + s->wrench[6 * i + k];
-      b->Tused[k] = b->T[k] + s->wrench[6 * i + 3 + k];
+    if (s->start[i + 1] == s->start[i]) continue;
+    RigidBodyEnd(rigid, i, h);
+    for (int k = 0; k < 3 && b->spec.motion == RIGID_FREE; k++) {
+      b->Fused[k] += s->wrench[6 * i + k];
+      b->Tused[k] += s->wrench[6 * i + 3 + k];
     }
-    RigidBodyKickApplied(rigid, b, .5 * h);
   }
   SystemWrench(rigid, s->row1, s->lambda, 0);
   SystemKick(rigid, .5 * h);

@@ -6,15 +6,16 @@
 #include "rigidrotation.h"
 
 typedef struct {
-  RigidBodySpec spec;   /* as given; mass and inertia are filled in by RigidSetUp() */
-  PetscReal volume;     /* m^3; per metre of depth in 2D (m^2) */
-  PetscReal X[3];       /* centre of mass, m */
-  PetscReal q[4];       /* orientation */
-  PetscReal V[3];       /* m/s */
-  PetscReal L[3];       /* free: angular momentum about the centre of mass, space frame, kg m^2/s; locked components unused */
-  PetscReal w[3];       /* prescribed: angular velocity, space frame, rad/s */
-  PetscReal F[3], T[3]; /* wrench collected for the next step, N, N m */
-  PetscReal Fused[3], Tused[3]; /* wrench of the last step, gravity not included */
+  RigidBodySpec spec;     /* as given; mass and inertia are filled in by RigidSetUp() */
+  PetscReal volume;       /* m^3; per metre of depth in 2D (m^2) */
+  PetscReal X[3];         /* centre of mass, m */
+  PetscReal q[4];         /* orientation */
+  PetscReal V[3];         /* m/s */
+  PetscReal L[3];         /* free: angular momentum about the centre of mass, space frame, kg m^2/s; locked components unused */
+  PetscReal w[3];         /* prescribed: angular velocity, space frame, rad/s */
+  PetscReal F[3], T[3];   /* wrench collected for the next step, N, N m */
+  PetscReal Fs[3], Ts[3]; /* short-range wrench of the present half step */
+  PetscReal Fused[3], Tused[3]; /* all wrenches of the last step but gravity's */
 } RigidBody;
 
 #define RIGID_MAX_ROWS 7
@@ -39,7 +40,8 @@ typedef struct {
   PetscBool broken;
 } RigidJoint;
 
-typedef struct _p_RigidSystem *RigidSystem; /* rigidconstraint.c */
+typedef struct _p_RigidContact *RigidContact; /* rigidcontact.c */
+typedef struct _p_RigidSystem *RigidSystem;   /* rigidconstraint.c */
 
 struct _p_Rigid {
   MPI_Comm comm;
@@ -54,10 +56,13 @@ struct _p_Rigid {
   PetscInt njoints, njointalloc;
   RigidJoint *joint;
   RigidSystem system; /* NULL without joints */
+  ShortRange shortrange;
+  PetscReal spacing, period[3];
+  RigidContact contact; /* NULL without short-range forces */
   PetscBool setup, advanced;
 };
 
-extern PetscLogEvent RIGID_Advance, RIGID_Fill;
+extern PetscLogEvent RIGID_Advance, RIGID_Fill, RIGID_Contact;
 extern PetscErrorCode RigidRegisterEvents(void);
 
 /* rigidshape.c: volume (m^3, area in 2D), principal moments per unit density (m^5; m^4 in 2D), smallest extent (m). */
@@ -86,8 +91,18 @@ extern void RigidJointRows(Rigid rigid, RigidJoint *joint, RigidRow row[]);
 extern PetscErrorCode RigidSystemCreate(Rigid rigid);
 extern PetscErrorCode RigidSystemDestroy(Rigid rigid);
 extern PetscErrorCode RigidSystemProjectVelocity(Rigid rigid);
-extern PetscErrorCode RigidSystemAdvance(Rigid rigid, PetscReal dt);
+extern PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal dt);
+extern PetscErrorCode RigidSystemEnd(Rigid rigid, PetscReal dt);
 extern PetscErrorCode RigidSystemHasBody(Rigid rigid, PetscInt i, PetscBool *has);
+
+/* rigidsurface.c */
+extern PetscBool RigidShapeNormal(const RigidBodySpec *s, PetscInt dim, const PetscReal x[3], PetscReal step, PetscReal n[3]);
+extern PetscErrorCode RigidSurfacePoints(const RigidBodySpec *s, PetscInt dim, PetscReal spacing, RigidMarkers *m);
+
+/* rigidcontact.c */
+extern PetscErrorCode RigidContactSetUp(Rigid rigid);
+extern PetscErrorCode RigidContactDestroy(RigidContact *c);
+extern PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick);
 
 /* rigidstep.c */
 extern void RigidBodyMobility(const RigidBody *b, const PetscReal J[6], PetscReal W[6]);
@@ -100,6 +115,7 @@ extern void RigidBodyKick(RigidBody *b, const PetscReal F[3], const PetscReal T[
 extern void RigidBodyKickApplied(Rigid rigid, RigidBody *b, PetscReal dt);
 extern PetscErrorCode RigidBodyDrift(Rigid rigid, PetscInt i, PetscReal dt);
 extern PetscErrorCode RigidBodyCheckLoad(Rigid rigid, PetscInt i);
-extern PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt);
+extern PetscErrorCode RigidBodyBegin(Rigid rigid, PetscInt i, PetscReal dt);
+extern void RigidBodyEnd(Rigid rigid, PetscInt i, PetscReal dt);
 
 #endif

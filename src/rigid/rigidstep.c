@@ -191,14 +191,14 @@ void RigidBodyKick(RigidBody *b, const PetscReal F[3], const PetscReal T[3], Pet
   }
 }
 
-/* The applied wrench and the weight at the present orientation, over dt. */
+/* The applied and short-range wrenches and the weight at the present orientation, over dt. */
 void RigidBodyKickApplied(Rigid rigid, RigidBody *b, PetscReal dt)
 {
   PetscReal F[3], T[3];
   RigidBodyWeight(rigid, b, F, T);
   for (int k = 0; k < 3; k++) {
-    F[k] += b->F[k];
-    T[k] += b->T[k];
+    F[k] += b->F[k] + b->Fs[k];
+    T[k] += b->T[k] + b->Ts[k];
   }
   RigidBodyKick(b, F, T, dt);
 }
@@ -221,17 +221,6 @@ PetscErrorCode RigidBodyDrift(Rigid rigid, PetscInt i, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AdvanceFree(Rigid rigid, PetscInt i, PetscReal dt)
-{
-  RigidBody *b = &rigid->body[i];
-
-  PetscFunctionBegin;
-  RigidBodyKickApplied(rigid, b, .5 * dt);
-  PetscCall(RigidBodyDrift(rigid, i, dt));
-  RigidBodyKickApplied(rigid, b, .5 * dt);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode RigidBodyCheckLoad(Rigid rigid, PetscInt i)
 {
   const RigidBody *b = &rigid->body[i];
@@ -245,18 +234,17 @@ PetscErrorCode RigidBodyCheckLoad(Rigid rigid, PetscInt i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt)
+/* First kick and free flight of one body over dt; of a prescribed one, all of its motion. */
+PetscErrorCode RigidBodyBegin(Rigid rigid, PetscInt i, PetscReal dt)
 {
   RigidBody *b = &rigid->body[i];
 
   PetscFunctionBegin;
   PetscCall(RigidBodyCheckLoad(rigid, i));
-  for (int k = 0; k < 3; k++) {
-    b->Fused[k] = b->F[k];
-    b->Tused[k] = b->T[k];
-  }
-  if (b->spec.motion == RIGID_FREE) PetscCall(AdvanceFree(rigid, i, dt));
-  if (b->spec.motion == RIGID_PRESCRIBED) {
+  if (b->spec.motion == RIGID_FREE) {
+    RigidBodyKickApplied(rigid, b, .5 * dt);
+    PetscCall(RigidBodyDrift(rigid, i, dt));
+  } else if (b->spec.motion == RIGID_PRESCRIBED) {
     PetscReal v[3], e[4], qn[4];
     for (int k = 0; k < 3; k++) {
       b->X[k] += dt * b->V[k];
@@ -268,4 +256,15 @@ PetscErrorCode RigidBodyAdvance(Rigid rigid, PetscInt i, PetscReal dt)
     for (int k = 0; k < 4; k++) b->q[k] = qn[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Second kick. */
+void RigidBodyEnd(Rigid rigid, PetscInt i, PetscReal dt)
+{
+  RigidBody *b = &rigid->body[i];
+  for (int k = 0; k < 3; k++) {
+    b->Fused[k] = b->F[k] + b->Fs[k];
+    b->Tused[k] = b->T[k] + b->Ts[k];
+  }
+  if (b->spec.motion == RIGID_FREE) RigidBodyKickApplied(rigid, b, .5 * dt);
 }

@@ -1,0 +1,488 @@
+/*
+  rigidcontact.c - short-range forces between the bodies of one Rigid: which pairs are near, where they face one another, and the
+  forces of shortrange.h there. Forces act on both bodies in one point, equal and opposite: momenta are kept.
+
+  Lubrication diverges as gaps close and would need ever smaller steps if taken explicitly. With G_i = sum over the body's
+  contacts of gamma (1/m + (r x n).J^-1 (r x n)), a kick of length h takes F = -gamma v_n/(1 + h (G_i + G_j)): the implicit
+  Euler value for a lone pair, and never more than that for crowds, since the resistance of all pairs is bounded by their sum.
+*/
+#include "rigidgeometry.h"
+#include <stdlib.h>
+
+typedef struct {
+  PetscReal lo, hi;
+  PetscInt body;
+  PetscBool ghost;
+} Interval;
+
+typedef struct {
+  PetscInt i, j;
+} Pair;
+
+/* n points from j to i; ri, rj: from the centres of mass to the point of action; s: gap. */
+typedef struct {
+  PetscInt i, j;
+  PetscReal n[3], ri[3], rj[3], s, gamma, R, share;
+} Contact;
+
+struct _p_RigidContact {
+  PetscInt nbodies;
+  PetscReal reach;       /* m */
+  PetscReal *radius;     /* of each body's bounding sphere, m */
+  RigidMarkers *surface; /* of each body, body frame; empty for spheres */
+  PetscInt njoined;
+  Pair *joined;       /* sorted */
+  Interval *interval; /* 2 n */
+  PetscInt npairs, npairalloc;
+  Pair *pair;
+  PetscInt n, nalloc;
+  Contact *contact;
+  PetscReal *G;         /* 1/s, of each body */
+  RigidMarkers near[2]; /* surface points of a pair that face the other body, space frame */
+};
+
+static PetscBool IsRound(const RigidBodySpec *s, PetscInt dim)
+{
+  return (PetscBool)(s->shape == RIGID_SPHERE || (dim == 2 && s->shape == RIGID_CYLINDER));
+}
+
+static PetscReal BoundingRadius(const RigidBodySpec *s, PetscInt dim)
+{
+  const PetscReal *a = s->size;
+  PetscReal h[3] = {0., 0., 0.};
+  if (IsRound(s, dim)) return a[0];
+  switch (s->shape) {
+  case RIGID_CYLINDER:
+    return PetscSqrtReal(a[0] * a[0] + .25 * a[1] * a[1]);
+  case RIGID_CAPSULE:
+    return a[0] + .5 * a[1];
+  case RIGID_ELLIPSOID:
+    return PetscMax(a[0], PetscMax(a[1], dim == 2 ? 0. : a[2]));
+  case RIGID_BOX:
+    for (PetscInt k = 0; k < dim; k++) h[k] = .5 * a[k];
+    return Vec3Norm(h);
+  default:
+    for (PetscInt k = 0; k < dim; k++) h[k] = PetscMax(PetscAbsReal(s->geometry->lo[k]), PetscAbsReal(s->geometry->hi[k]));
+    return Vec3Norm(h);
+  }
+}
+
+static int ComparePairs(const void *pa, const void *pb)
+{
+  const Pair *a = (const Pair *)pa, *b = (const Pair *)pb;
+  if (a->i != b->i) return a->i < b->i ? -1 : 1;
+  return a->j < b->j ? -1 : (a->j > b->j);
+}
+
+static int CompareIntervals(const void *pa, const void *pb)
+{
+  const Interval *a = (const Interval *)pa, *b = (const Interval *)pb;
+  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
+  return a->body < b->body ? -1 : (a->body > b->body);
+}
+
+static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spacing, RigidContact *contact)
+{
+  RigidContact c;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&c));
+  *contact = c;
+  c->reach = reach;
+  c->nbodies = rigid->n;
+  PetscCall(PetscMalloc3((size_t)rigid->n, &c->radius, (size_t)(2 * rigid->n), &c->interval, (size_t)rigid->n, &c->G));
+  PetscCall(PetscCalloc1((size_t)rigid->n, &c->surface));
+  PetscCall(PetscMalloc1((size_t)rigid->njoints, &c->joined));
+  for (PetscInt j = 0; j < rigid->njoints; j++) {
+    c->joined[c->njoined].i = PetscMin(rigid->joint[j].spec.a, rigid->joint[j].spec.b);
+    c->joined[c->njoined++].j = PetscMax(rigid->joint[j].spec.a, rigid->joint[j].spec.b);
+  }
+  qsort(c->joined, (size_t)c->njoined, sizeof(Pair), ComparePairs);
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    const RigidBodySpec *s = &rigid->body[i].spec;
+    c->radius[i] = BoundingRadius(s, rigid->dim);
+    if (IsRound(s, rigid->dim)) continue;
+    PetscCheck(spacing > 0. && !PetscIsInfOrNanReal(spacing), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "-rigid_shortrange_spacing %g m: must be > 0, as body %" PetscInt_FMT " is a %s", (double)spacing, i,
+               RigidShapeName(s->shape));
+    PetscCall(RigidSurfacePoints(s, rigid->dim, spacing, &c->surface[i]));
+  }
+  for (PetscInt i = 0; i < rigid->n; i++)
+    for (int k = 0; k < 3; k++)
+      PetscCheck(rigid->period[k] == 0. || IsRound(&rigid->body[i].spec, rigid->dim) == PETSC_FALSE ||
+                     rigid->period[k] >= 2. * (2. * c->radius[i] + reach),
+                 rigid->comm, PETSC_ERR_ARG_INCOMP,
+                 "Rigid body %" PetscInt_FMT ": a period of %g m is too short for nearest images; must be >= %g m", i,
+                 (double)rigid->period[k], 2. * (2. * (double)c->radius[i] + (double)reach));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidContactDestroy(RigidContact *contact)
+{
+  RigidContact c = *contact;
+
+  PetscFunctionBegin;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 2; k++) PetscCall(PetscFree(c->near[k].x));
+  for (int k = 0; k < 2; k++) PetscCall(PetscFree(c->near[k].volume));
+  PetscCall(PetscFree(c->joined));
+  PetscCall(PetscFree(c->pair));
+  PetscCall(PetscFree(c->contact));
+  for (PetscInt i = 0; i < c->nbodies; i++) PetscCall(PetscFree(c->surface[i].x));
+  for (PetscInt i = 0; i < c->nbodies; i++) PetscCall(PetscFree(c->surface[i].volume));
+  PetscCall(PetscFree3(c->radius, c->interval, c->G));
+  PetscCall(PetscFree(c->surface));
+  PetscCall(PetscFree(*contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidContactSetUp(Rigid rigid)
+{
+  const ShortRange *p = &rigid->shortrange;
+
+  PetscFunctionBegin;
+  PetscCall(ShortRangeCheck(rigid->comm, p));
+  if (p->viscosity == 0. && p->modulus == 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(rigid->dim == 3 || p->viscosity == 0., rigid->comm, PETSC_ERR_ARG_INCOMP,
+             "-rigid_lubrication_viscosity %g Pa s: lubrication (Eqs. 31, 32) is for 3D; must be 0 in 2D", (double)p->viscosity);
+  PetscCall(ContactCreate(rigid, PetscMax(p->viscosity > 0. ? p->cutoff : 0., p->roughness), rigid->spacing, &rigid->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal NearestImage(PetscReal d, PetscReal period)
+{
+  return period > 0. ? d - period * PetscFloorReal(d / period + .5) : d;
+}
+
+static PetscErrorCode AddPair(Rigid rigid, RigidContact c, PetscInt a, PetscInt b)
+{
+  const Pair p = {PetscMin(a, b), PetscMax(a, b)};
+  const PetscReal reach = c->radius[a] + c->radius[b] + c->reach;
+  PetscReal d2 = 0.;
+
+  PetscFunctionBegin;
+  if (a == b || (rigid->body[a].spec.motion != RIGID_FREE && rigid->body[b].spec.motion != RIGID_FREE))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 3; k++) d2 += PetscSqr(NearestImage(rigid->body[a].X[k] - rigid->body[b].X[k], rigid->period[k]));
+  if (d2 > reach * reach) PetscFunctionReturn(PETSC_SUCCESS);
+  if (c->njoined && bsearch(&p, c->joined, (size_t)c->njoined, sizeof(Pair), ComparePairs)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (c->npairs == c->npairalloc) {
+    c->npairalloc = 2 * c->npairalloc + 64;
+    PetscCall(PetscRealloc(sizeof(Pair) * (size_t)c->npairalloc, &c->pair));
+  }
+  c->pair[c->npairs++] = p;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs whose bounding spheres are within reach, sorted: sweep along x, in a periodic direction with copies one period on. */
+static PetscErrorCode FindPairs(Rigid rigid, RigidContact c)
+{
+  PetscInt n = 0, m = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    const PetscReal L = rigid->period[0], x = rigid->body[i].X[0], r = c->radius[i] + .5 * c->reach;
+    const PetscReal folded = L > 0. ? x - L * PetscFloorReal(x / L) : x;
+    c->interval[n++] = (Interval){folded - r, folded + r, i, PETSC_FALSE};
+    if (L > 0.) c->interval[n++] = (Interval){folded + L - r, folded + L + r, i, PETSC_TRUE};
+  }
+  qsort(c->interval, (size_t)n, sizeof(Interval), CompareIntervals);
+  c->npairs = 0;
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt b = a + 1; b < n && c->interval[b].lo <= c->interval[a].hi; b++)
+      if (!c->interval[a].ghost || !c->interval[b].ghost) PetscCall(AddPair(rigid, c, c->interval[a].body, c->interval[b].body));
+  if (c->npairs) qsort(c->pair, (size_t)c->npairs, sizeof(Pair), ComparePairs);
+  for (PetscInt k = 0; k < c->npairs; k++)
+    if (m == 0 || ComparePairs(&c->pair[k], &c->pair[m - 1])) c->pair[m++] = c->pair[k];
+  c->npairs = m;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Place of body j as seen from body i: its nearest image. */
+static void ImageOf(Rigid rigid, PetscInt i, PetscInt j, PetscReal X[3])
+{
+  for (int k = 0; k < 3; k++)
+    X[k] = rigid->body[i].X[k] - NearestImage(rigid->body[i].X[k] - rigid->body[j].X[k], rigid->period[k]);
+}
+
+/* Gap between a point x and body j placed at X; n, if not NULL: normal of its surface there, space frame. */
+static PetscReal GapTo(Rigid rigid, PetscInt j, const PetscReal X[3], const PetscReal x[3], PetscReal n[3])
+{
+  const RigidBody *b = &rigid->body[j];
+  const PetscReal d[3] = {x[0] - X[0], x[1] - X[1], x[2] - X[2]};
+  PetscReal y[3], ny[3] = {0., 0., 0.}, s;
+  QuatRotateBack(b->q, d, y);
+  s = RigidShapeDistance(&b->spec, y);
+  if (!n) return s;
+  (void)RigidShapeNormal(&b->spec, rigid->dim, y, 1.e-6 * (PetscAbsReal(s) + 1.e-3 * RigidShapeSmallest(&b->spec, rigid->dim)),
+                         ny);
+  QuatRotate(b->q, ny, n);
+  return s;
+}
+
+/* Point of action x; X_j is the image of body j. */
+static PetscErrorCode AddContact(Rigid rigid, RigidContact c, PetscInt i, PetscInt j, const PetscReal Xj[3], const PetscReal n[3],
+                                 const PetscReal x[3], PetscReal s, PetscReal gamma, PetscReal R, PetscReal share)
+{
+  Contact *t;
+
+  PetscFunctionBegin;
+  if (c->n == c->nalloc) {
+    c->nalloc = 2 * c->nalloc + 64;
+    PetscCall(PetscRealloc(sizeof(Contact) * (size_t)c->nalloc, &c->contact));
+  }
+  t = &c->contact[c->n++];
+  t->i = i;
+  t->j = j;
+  t->s = s;
+  t->gamma = gamma;
+  t->R = R;
+  t->share = share;
+  for (int k = 0; k < 3; k++) {
+    t->n[k] = n[k];
+    t->ri[k] = x[k] - rigid->body[i].X[k];
+    t->rj[k] = x[k] - Xj[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RoundRound(Rigid rigid, RigidContact c, PetscInt i, PetscInt j)
+{
+  const PetscReal ai = c->radius[i], aj = c->radius[j];
+  PetscReal Xj[3], n[3], x[3], d, s;
+
+  PetscFunctionBegin;
+  ImageOf(rigid, i, j, Xj);
+  for (int k = 0; k < 3; k++) n[k] = rigid->body[i].X[k] - Xj[k];
+  d = Vec3Norm(n);
+  s = d - ai - aj;
+  if (s >= c->reach || d == 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 3; k++) {
+    n[k] /= d;
+    x[k] = Xj[k] + (aj + .5 * s) * n[k];
+  }
+  PetscCall(
+      AddContact(rigid, c, i, j, Xj, n, x, s, ShortRangeSphere(&rigid->shortrange, ai, aj, s), 1. / (1. / ai + 1. / aj), 1.));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* i is round, j is not. */
+static PetscErrorCode RoundAny(Rigid rigid, RigidContact c, PetscInt i, PetscInt j)
+{
+  const PetscReal a = c->radius[i];
+  PetscReal Xj[3], n[3], x[3], s;
+
+  PetscFunctionBegin;
+  ImageOf(rigid, i, j, Xj);
+  s = GapTo(rigid, j, Xj, rigid->body[i].X, n) - a;
+  if (s >= c->reach) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 3; k++) x[k] = rigid->body[i].X[k] - (a + .5 * s) * n[k];
+  PetscCall(AddContact(rigid, c, i, j, Xj, n, x, s, ShortRangeSphere(&rigid->shortrange, a, PETSC_INFINITY, s), a, 1.));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Surface points of body i (placed at X) within reach of body j (at Xj), space frame. */
+static PetscErrorCode FacingPoints(Rigid rigid, RigidContact c, PetscInt i, const PetscReal X[3], PetscInt j,
+                                   const PetscReal Xj[3], RigidMarkers *near)
+{
+  PetscFunctionBegin;
+  near->n = 0;
+  for (PetscInt k = 0; k < c->surface[i].n; k++) {
+    PetscReal x[3], s, d2 = 0.;
+    QuatRotate(rigid->body[i].q, &c->surface[i].x[3 * k], x);
+    for (int d = 0; d < 3; d++) {
+      x[d] += X[d];
+      d2 += PetscSqr(x[d] - Xj[d]);
+    }
+    if (d2 > PetscSqr(c->radius[j] + c->reach)) continue;
+    s = GapTo(rigid, j, Xj, x, NULL);
+    if (s < c->reach) PetscCall(RigidMarkersAdd(near, x[0], x[1], x[2], s));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Eq. 32 over all pairs of facing points; contact of each side's points, half of it each. near->volume holds the gaps. */
+static PetscErrorCode AnyAny(Rigid rigid, RigidContact c, PetscInt i, PetscInt j)
+{
+  const ShortRange *p = &rigid->shortrange;
+  PetscReal Xj[3], n[3], x[3];
+
+  PetscFunctionBegin;
+  ImageOf(rigid, i, j, Xj);
+  PetscCall(FacingPoints(rigid, c, i, rigid->body[i].X, j, Xj, &c->near[0]));
+  PetscCall(FacingPoints(rigid, c, j, Xj, i, rigid->body[i].X, &c->near[1]));
+  for (PetscInt a = 0; a < c->near[0].n && p->viscosity > 0.; a++)
+    for (PetscInt b = 0; b < c->near[1].n; b++) {
+      PetscReal s;
+      for (int k = 0; k < 3; k++) {
+        n[k] = c->near[0].x[3 * a + k] - c->near[1].x[3 * b + k];
+        x[k] = .5 * (c->near[0].x[3 * a + k] + c->near[1].x[3 * b + k]);
+      }
+      s = Vec3Norm(n);
+      if (s >= p->cutoff || s == 0.) continue;
+      for (int k = 0; k < 3; k++) n[k] /= s;
+      PetscCall(AddContact(rigid, c, i, j, Xj, n, x, s, ShortRangeMarkers(p, rigid->spacing, s), 0., 0.));
+    }
+  for (int side = 0; side < 2 && p->modulus > 0.; side++)
+    for (PetscInt a = 0; a < c->near[side].n; a++) {
+      if (c->near[side].volume[a] >= p->roughness) continue;
+      const PetscReal s = GapTo(rigid, side ? i : j, side ? rigid->body[i].X : Xj, &c->near[side].x[3 * a], n);
+      for (int k = 0; k < 3; k++) n[k] *= side ? -1. : 1.;
+      PetscCall(AddContact(rigid, c, i, j, Xj, n, &c->near[side].x[3 * a], s, 0., .5 * rigid->spacing, .5));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindContacts(Rigid rigid, RigidContact c)
+{
+  PetscFunctionBegin;
+  c->n = 0;
+  for (PetscInt k = 0; k < c->npairs; k++) {
+    const PetscInt i = c->pair[k].i, j = c->pair[k].j;
+    const PetscBool ri = IsRound(&rigid->body[i].spec, rigid->dim), rj = IsRound(&rigid->body[j].spec, rigid->dim);
+    if (ri && rj)
+      PetscCall(RoundRound(rigid, c, i, j));
+    else if (ri)
+      PetscCall(RoundAny(rigid, c, i, j));
+    else if (rj)
+      PetscCall(RoundAny(rigid, c, j, i));
+    else
+      PetscCall(AnyAny(rigid, c, i, j));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Inverse effective mass of one side of a contact. */
+static PetscReal InverseMass(const RigidBody *b, const PetscReal n[3], const PetscReal r[3])
+{
+  PetscReal J[6], W[6], w = 0.;
+  for (int k = 0; k < 3; k++) J[k] = n[k];
+  Vec3Cross(r, n, J + 3);
+  RigidBodyMobility(b, J, W);
+  for (int k = 0; k < 6; k++) w += J[k] * W[k];
+  return w;
+}
+
+static PetscReal NormalVelocity(Rigid rigid, const Contact *t)
+{
+  PetscReal v[3], w[3], x[3];
+  for (int k = 0; k < 3; k++) v[k] = rigid->body[t->i].V[k] - rigid->body[t->j].V[k];
+  RigidBodyOmega(&rigid->body[t->i], rigid->body[t->i].q, w);
+  Vec3Cross(w, t->ri, x);
+  for (int k = 0; k < 3; k++) v[k] += x[k];
+  RigidBodyOmega(&rigid->body[t->j], rigid->body[t->j].q, w);
+  Vec3Cross(w, t->rj, x);
+  for (int k = 0; k < 3; k++) v[k] -= x[k];
+  return Vec3Dot(v, t->n);
+}
+
+/* Fs, Ts of all bodies from their present placement and velocities, for a kick of length `kick` (s). */
+PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick)
+{
+  RigidContact c = rigid->contact;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(RIGID_Contact, 0, 0, 0, 0));
+  PetscCall(FindPairs(rigid, c));
+  PetscCall(FindContacts(rigid, c));
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    c->G[i] = 0.;
+    for (int k = 0; k < 3; k++) rigid->body[i].Fs[k] = rigid->body[i].Ts[k] = 0.;
+  }
+  for (PetscInt k = 0; k < c->n; k++) {
+    const Contact *t = &c->contact[k];
+    c->G[t->i] += t->gamma * InverseMass(&rigid->body[t->i], t->n, t->ri);
+    c->G[t->j] += t->gamma * InverseMass(&rigid->body[t->j], t->n, t->rj);
+  }
+  for (PetscInt k = 0; k < c->n; k++) {
+    const Contact *t = &c->contact[k];
+    RigidBody *bi = &rigid->body[t->i], *bj = &rigid->body[t->j];
+    const PetscReal v = NormalVelocity(rigid, t), w = InverseMass(bi, t->n, t->ri) + InverseMass(bj, t->n, t->rj);
+    PetscReal f = -t->gamma * v / (1. + kick * (c->G[t->i] + c->G[t->j])), x[3];
+    if (t->share > 0. && w > 0.) f += t->share * ShortRangeContact(&rigid->shortrange, t->R, 1. / w, t->s, v);
+    for (int d = 0; d < 3; d++) {
+      bi->Fs[d] += f * t->n[d];
+      bj->Fs[d] -= f * t->n[d];
+    }
+    Vec3Cross(t->ri, t->n, x);
+    for (int d = 0; d < 3; d++) bi->Ts[d] += f * x[d];
+    Vec3Cross(t->rj, t->n, x);
+    for (int d = 0; d < 3; d++) bj->Ts[d] -= f * x[d];
+  }
+  PetscCall(PetscLogEventEnd(RIGID_Contact, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Deepest overlap of a pair, m; 0 when there is none. */
+static PetscErrorCode PairOverlap(Rigid rigid, RigidContact c, PetscInt i, PetscInt j, PetscReal *depth)
+{
+  PetscReal Xj[3];
+
+  PetscFunctionBegin;
+  *depth = 0.;
+  c->n = 0;
+  if (IsRound(&rigid->body[i].spec, rigid->dim) && IsRound(&rigid->body[j].spec, rigid->dim))
+    PetscCall(RoundRound(rigid, c, i, j));
+  else if (IsRound(&rigid->body[i].spec, rigid->dim))
+    PetscCall(RoundAny(rigid, c, i, j));
+  else if (IsRound(&rigid->body[j].spec, rigid->dim))
+    PetscCall(RoundAny(rigid, c, j, i));
+  else {
+    ImageOf(rigid, i, j, Xj);
+    PetscCall(FacingPoints(rigid, c, i, rigid->body[i].X, j, Xj, &c->near[0]));
+    PetscCall(FacingPoints(rigid, c, j, Xj, i, rigid->body[i].X, &c->near[1]));
+    for (int side = 0; side < 2; side++)
+      for (PetscInt k = 0; k < c->near[side].n; k++) *depth = PetscMax(*depth, -c->near[side].volume[k]);
+  }
+  if (c->n) *depth = PetscMax(*depth, -c->contact[0].s);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidCheckOverlap(Rigid rigid, PetscReal spacing)
+{
+  RigidContact c;
+
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  PetscCall(ContactCreate(rigid, 0., spacing, &c));
+  PetscCall(FindPairs(rigid, c));
+  for (PetscInt k = 0; k < c->npairs; k++) {
+    const PetscInt i = c->pair[k].i, j = c->pair[k].j;
+    PetscReal depth;
+    PetscCall(PairOverlap(rigid, c, i, j, &depth));
+    PetscCheck(depth <= 1.e-9 * (c->radius[i] + c->radius[j]), rigid->comm, PETSC_ERR_ARG_INCOMP,
+               "Rigid bodies %" PetscInt_FMT " (%s) and %" PetscInt_FMT " (%s) overlap by %g m", i,
+               RigidShapeName(rigid->body[i].spec.shape), j, RigidShapeName(rigid->body[j].spec.shape), (double)depth);
+  }
+  PetscCall(RigidContactDestroy(&c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetShortRange(Rigid rigid, const ShortRange *p)
+{
+  PetscFunctionBegin;
+  PetscCheck(!rigid->setup, rigid->comm, PETSC_ERR_ORDER, "RigidSetShortRange() must come before RigidSetUp()");
+  PetscCall(ShortRangeCheck(rigid->comm, p));
+  rigid->shortrange = *p;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetShortRangeSpacing(Rigid rigid, PetscReal spacing)
+{
+  PetscFunctionBegin;
+  PetscCheck(spacing >= 0. && !PetscIsInfOrNanReal(spacing), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_shortrange_spacing %g m: must be >= 0", (double)spacing);
+  rigid->spacing = spacing;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3])
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCheck(period[k] >= 0. && !PetscIsInfOrNanReal(period[k]), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "RigidSetPeriod(): component %d = %g m; must be > 0, or 0 for none", k, (double)period[k]);
+    rigid->period[k] = period[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,69 @@
+/* shortrange.c - the formulas of shortrange.h. */
+#include "shortrange.h"
+#include <math.h>
+
+/* No lubrication, no contact. */
+PetscErrorCode ShortRangeInit(ShortRange *p)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(p, sizeof(*p)));
+  p->restitution = 1.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ShortRangeCheck(MPI_Comm comm, const ShortRange *p)
+{
+  PetscFunctionBegin;
+  PetscCheck(p->viscosity >= 0. && !PetscIsInfOrNanReal(p->viscosity), comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_lubrication_viscosity %g Pa s: must be >= 0", (double)p->viscosity);
+  PetscCheck(p->modulus >= 0. && !PetscIsInfOrNanReal(p->modulus), comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_contact_modulus %g Pa: must be >= 0", (double)p->modulus);
+  if (p->viscosity == 0. && p->modulus == 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(p->roughness > 0. && !PetscIsInfOrNanReal(p->roughness), comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_roughness %g m: must be > 0", (double)p->roughness);
+  PetscCheck(p->viscosity == 0. || (p->cutoff > p->roughness && !PetscIsInfOrNanReal(p->cutoff)), comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_lubrication_cutoff %g m: must be > -rigid_roughness = %g m", (double)p->cutoff, (double)p->roughness);
+  PetscCheck(p->restitution > 0. && p->restitution <= 1., comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-rigid_contact_restitution %g: must be > 0 and <= 1", (double)p->restitution);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 1/m: the factor of Eqs. 31 and 32. */
+static PetscReal GapFactor(const ShortRange *p, PetscReal s)
+{
+  const PetscReal g = PetscMax(s, p->roughness), d = p->cutoff;
+  if (p->viscosity == 0. || s >= d) return 0.;
+  return p->kink ? 1. / g - 1. / d : (d - g) * (d - g) / (g * d * d);
+}
+
+PetscReal ShortRangeSphere(const ShortRange *p, PetscReal ai, PetscReal aj, PetscReal s)
+{
+  const PetscReal a = 1. / (1. / ai + 1. / aj);
+  return 6. * PETSC_PI * p->viscosity * a * a * GapFactor(p, s);
+}
+
+PetscReal ShortRangeMarkers(const ShortRange *p, PetscReal h, PetscReal s)
+{
+  return 1.5 * PETSC_PI * p->viscosity * h * h * GapFactor(p, s);
+}
+
+PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, PetscReal s, PetscReal dsdt)
+{
+  const PetscReal d = p->roughness - s, k = 4. / 3. * p->modulus * PetscSqrtReal(R), l = PetscLogReal(p->restitution);
+  const PetscReal alpha = -PetscSqrtReal(5.) * l / PetscSqrtReal(l * l + PETSC_PI * PETSC_PI);
+  if (p->modulus == 0. || d <= 0.) return 0.;
+  return k * d * PetscSqrtReal(d) - alpha * PetscSqrtReal(m * k * PetscSqrtReal(d)) * dsdt;
+}
+
+/* 2 dmax/v int_0^1 dx/sqrt(1 - x^(5/2)), dmax = (5 m v^2/(4 k))^(2/5); the integral is sqrt(pi) Gamma(7/5)/Gamma(9/10). */
+PetscReal ShortRangeContactTime(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v)
+{
+  const PetscReal k = 4. / 3. * p->modulus * PetscSqrtReal(R), d = PetscPowReal(1.25 * m * v * v / k, .4);
+  return 2. * d / v * PetscSqrtReal(PETSC_PI) * tgamma(1.4) / tgamma(.9);
+}
+
+PetscReal ShortRangeCriticalStokes(const ShortRange *p)
+{
+  const PetscReal x = p->roughness / p->cutoff;
+  return p->kink ? -PetscLogReal(x) - 1. + x : -PetscLogReal(x) - 2. * (1. - x) + .5 * (1. - x * x);
+}

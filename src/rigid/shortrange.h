@@ -1,0 +1,44 @@
+/*
+  shortrange.h - short-range forces between solids: lubrication (Pazouki, Serban, Negrut, Eqs. 31 and 32) and Hertz contact. Pure
+  functions of a gap, public so that couplings of other bodies (beams) use the same ones.
+
+  Lubrication is a resistance gamma (N s/m) to the normal relative velocity, F = -gamma v_n. The factor 1/s - 1/Dc of Eqs. 31
+  and 32 has a kink at s = Dc; by default (Dc - s)^2/(s Dc^2) = 1/s - 1/Dc - (Dc - s)/Dc^2 takes its place: the same singular
+  part, value and slope 0 at the cutoff. Gaps below the roughness s_min of the surfaces count as s_min.
+
+  Contact begins at a gap of s_min, where asperities meet, so that smooth surfaces never overlap: overlap d = s_min - s,
+  F = k d^(3/2) + alpha sqrt(m k) d^(1/4) dd/dt,  k = 4/3 E* sqrt(R),  alpha = -sqrt(5) ln e/sqrt(ln^2 e + pi^2),
+  the law whose coefficient of restitution is e at any speed (Tsuji et al., Powder Technol. 71, 1992; Antypov and Elliott, EPL 94,
+  2011).
+
+  With both, a sphere meets a wall at the speed v0 (1 - St_c/St), St = m v0/(6 pi mu a^2) = (2/9)(rho_s/rho) Re_p (Sect. 2.5), and
+  does not rebound at St near St_c or below, see ShortRangeCriticalStokes().
+*/
+#ifndef SHORTRANGE_H
+#define SHORTRANGE_H
+
+#include "frondsys.h"
+
+typedef struct {
+  PetscReal viscosity;   /* mu, Pa s; 0: no lubrication */
+  PetscReal cutoff;      /* Dc, m, > roughness */
+  PetscReal roughness;   /* s_min, m, > 0 */
+  PetscReal modulus;     /* E* = 1/((1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j), Pa; 0: no contact */
+  PetscReal restitution; /* e, 0 < e <= 1 */
+  PetscBool kink;        /* the factor 1/s - 1/Dc as printed in Eqs. 31, 32 */
+} ShortRange;
+
+FROND_EXTERN PetscErrorCode ShortRangeInit(ShortRange *p);
+FROND_EXTERN PetscErrorCode ShortRangeCheck(MPI_Comm comm, const ShortRange *p);
+/* Eq. 31: spheres of radii ai, aj (m); PETSC_INFINITY for a plane wall. */
+FROND_EXTERN PetscReal ShortRangeSphere(const ShortRange *p, PetscReal ai, PetscReal aj, PetscReal s);
+/* Eq. 32: one pair of surface markers, s* apart, each of size h (m). */
+FROND_EXTERN PetscReal ShortRangeMarkers(const ShortRange *p, PetscReal h, PetscReal s);
+/* Repulsion, N: R = 1/(1/ai + 1/aj) (m), m reduced mass (kg), gap s (m), dsdt its rate (m/s). */
+FROND_EXTERN PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, PetscReal s, PetscReal dsdt);
+/* Duration of an elastic collision at speed v, s (Hertz): resolve it by 20 steps or more. */
+FROND_EXTERN PetscReal ShortRangeContactTime(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v);
+/* St_c = integral of the factor of Eq. 31 over s_min < s < Dc: the share of St that the approach to contact uses up. */
+FROND_EXTERN PetscReal ShortRangeCriticalStokes(const ShortRange *p);
+
+#endif
