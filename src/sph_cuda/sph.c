@@ -50,6 +50,7 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   sph->par.lattice = PETSC_TRUE;
   sph->par.alpha = 0.1;
   sph->par.delta = 0.1;
+  sph->par.shiftfactor = 4.0;
   sph->par.cfl = 0.25;
   sph->par.dtfixed = PETSC_DECIDE;
   sph->par.reinit = SPH_REINIT_SHEPARD;
@@ -159,6 +160,18 @@ static PetscErrorCode CheckParameters(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What a backend does not have is refused, never left out silently. */
+static PetscErrorCode CheckBackend(Sph sph)
+{
+  PetscBool cuda;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(sph->type, SPHCUDA, &cuda));
+  PetscCheck(!cuda || sph->par.shifting == SPH_SHIFTING_NONE, sph->comm, PETSC_ERR_SUP,
+             "sph_shifting = %s: the cuda backend has none; use sph_type cpu or sph_shifting none", SphShiftingTypes[sph->par.shifting]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SphSetUp - Check the parameters, choose the backend, sort the markers and evaluate the first right-hand side.
 
@@ -170,6 +183,7 @@ PetscErrorCode SphSetUp(Sph sph)
   if (sph->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckParameters(sph));
   PetscCall(ChooseBackend(sph));
+  PetscCall(CheckBackend(sph));
   for (PetscInt i = 0; i < sph->n; i++) {
     if (sph->group[i] == -1) { /* SphAddFluid left the pressure here, and the volume in m */
       PetscCheck(sph->st.s[i] > -0.5 * sph->par.B, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,

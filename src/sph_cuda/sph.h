@@ -36,6 +36,11 @@ typedef enum { SPH_REINIT_NONE, SPH_REINIT_SUM, SPH_REINIT_SHEPARD } SphReinitTy
 typedef enum { SPH_VISCOSITY_EQ6, SPH_VISCOSITY_MORRIS, SPH_VISCOSITY_ARTIFICIAL } SphViscosityType;
 /* Density diffusion: Molteni and Colagrossi (2009), or without the hydrostatic part, Fourtakas et al. (2019). */
 typedef enum { SPH_DIFFUSION_NONE, SPH_DIFFUSION_MOLTENI, SPH_DIFFUSION_FOURTAKAS } SphDiffusionType;
+/*
+  Shifting of the markers relative to the fluid, sphpair.h. SUN: Sun et al. (2017), not at free surfaces; for confined and periodic
+  flows, whose markers would cluster or line up.
+*/
+typedef enum { SPH_SHIFTING_NONE, SPH_SHIFTING_SUN } SphShiftingType;
 /* sphstep.h; rk2 and symplectic evaluate two right-hand sides per step, verlet one. */
 typedef enum { SPH_INTEGRATOR_RK2, SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC } SphIntegratorType;
 
@@ -46,6 +51,7 @@ FROND_EXTERN const char *const SphReinitTypes[];
 FROND_EXTERN const char *const SphViscosityTypes[];
 FROND_EXTERN const char *const SphDiffusionTypes[];
 FROND_EXTERN const char *const SphIntegratorTypes[];
+FROND_EXTERN const char *const SphShiftingTypes[];
 
 FROND_EXTERN PetscErrorCode SphCreate(MPI_Comm comm, Sph *sph);
 FROND_EXTERN PetscErrorCode SphSetOptionsPrefix(Sph sph, const char prefix[]);
@@ -70,6 +76,8 @@ FROND_EXTERN PetscErrorCode SphSetViscosityType(Sph sph, SphViscosityType type);
 FROND_EXTERN PetscErrorCode SphSetArtificialViscosity(Sph sph, PetscReal alpha);
 /* Density diffusion and its factor delta (default 0.1). */
 FROND_EXTERN PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal delta);
+/* Shifting velocity and its factor: 2 h V_max times the factor per unit concentration gradient. */
+FROND_EXTERN PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor);
 FROND_EXTERN PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator);
 FROND_EXTERN PetscErrorCode SphSetKernel(Sph sph, SphKernelType kernel);
 FROND_EXTERN PetscErrorCode SphSetPrecision(Sph sph, SphPrecision precision);

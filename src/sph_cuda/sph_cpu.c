@@ -98,7 +98,7 @@ static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
   }
   if (!cpu->q) {
     cpu->stride = (sph->n + 31) / 16 * 16;
-    cpu->nq = SPH_NQ_BASE + (SphCpuTwoVelocities(&sph->par) ? 3 : 0) + (sph->par.diffusion != SPH_DIFFUSION_NONE);
+    cpu->nq = SPH_NQ_BASE + (SphCpuTwoVelocities(&sph->par) ? 3 : 0) + SphCpuFluidWeight(&sph->par);
     PetscCall(PetscMalloc((size_t)cpu->stride * (size_t)cpu->nq * real, &cpu->q));
     for (int k = 0; k < 3; k++) PetscCall(PetscCalloc1(sph->n, &cpu->xref[k]));
   }
@@ -151,6 +151,7 @@ static PetscErrorCode Rates_CPU(Sph sph)
   PetscCall(PetscLogEventEnd(SPH_Aux, 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(SPH_Rates, 0, 0, 0, 0));
   Sweep(sph, SPH_SWEEP_RATES);
+  if (sph->par.shifting != SPH_SHIFTING_NONE) Sweep(sph, SPH_SWEEP_SHIFT);
   PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
   sph->evaluations += (PetscReal)(sph->n - sph->left);
   PetscFunctionReturn(PETSC_SUCCESS);

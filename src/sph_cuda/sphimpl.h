@@ -42,6 +42,8 @@ typedef struct {
   int       diffusion;  /* SphDiffusionType */
   PetscReal delta;      /* density diffusion, - */
   int       integrator; /* SphIntegratorType */
+  int       shifting;   /* SphShiftingType */
+  PetscReal shiftfactor; /* - */
 } SphParams;
 
 /* One array per component, n long. */

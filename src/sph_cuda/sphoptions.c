@@ -8,6 +8,7 @@ const char *const SphReinitTypes[] = {"none", "sum", "shepard", "SphReinitType",
 const char *const SphViscosityTypes[] = {"eq6", "morris", "artificial", "SphViscosityType", "SPH_VISCOSITY_", NULL};
 const char *const SphDiffusionTypes[] = {"none", "molteni", "fourtakas", "SphDiffusionType", "SPH_DIFFUSION_", NULL};
 const char *const SphIntegratorTypes[] = {"rk2", "verlet", "symplectic", "SphIntegratorType", "SPH_INTEGRATOR_", NULL};
+const char *const SphShiftingTypes[] = {"none", "sun", "SphShiftingType", "SPH_SHIFTING_", NULL};
 
 static PetscErrorCode CheckEditable(Sph sph, const char *name)
 {
@@ -214,6 +215,15 @@ PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckRange(sph, "shifting_factor", factor, 0.0, 100.0));
+  sph->par.shifting = (int)type;
+  sph->par.shiftfactor = factor;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator)
 {
   PetscFunctionBegin;
@@ -407,6 +417,12 @@ static PetscErrorCode OptionsForms(Sph sph, PetscOptionItems *PetscOptionsObject
   PetscCall(PetscOptionsEnum("-sph_density_diffusion", "Density diffusion between fluid markers", "SphSetDensityDiffusion", SphDiffusionTypes, e, &e, &set));
   PetscCall(PetscOptionsReal("-sph_density_diffusion_delta", "Factor delta of the density diffusion", "SphSetDensityDiffusion", r, &r, &set2));
   if (set || set2) PetscCall(SphSetDensityDiffusion(sph, (SphDiffusionType)e, r));
+  e = (PetscEnum)p->shifting;
+  r = p->shiftfactor;
+  PetscCall(PetscOptionsEnum("-sph_shifting", "Marker shifting, not at free surfaces: for confined and periodic flows", "SphSetShifting",
+                             SphShiftingTypes, e, &e, &set));
+  PetscCall(PetscOptionsReal("-sph_shifting_factor", "Factor of the shifting velocity", "SphSetShifting", r, &r, &set2));
+  if (set || set2) PetscCall(SphSetShifting(sph, (SphShiftingType)e, r));
   PetscCall(PetscOptionsEnum("-sph_integrator", "Time integration of the fluid", "SphSetIntegrator", SphIntegratorTypes, (PetscEnum)p->integrator, &e, &set));
   if (set) PetscCall(SphSetIntegrator(sph, (SphIntegratorType)e));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -447,6 +463,8 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
       p->reinitevery));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_viscosity_type %s, sph_artificial_alpha %g, sph_density_diffusion %s, sph_density_diffusion_delta %g, sph_integrator %s\n", SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
                                    (double)p->delta, SphIntegratorTypes[p->integrator]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_shifting %s, sph_shifting_factor %g\n", SphShiftingTypes[p->shifting],
+                                   (double)p->shiftfactor));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
   if (p->dtfixed > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dt %g s (fixed)\n", (double)p->dtfixed));

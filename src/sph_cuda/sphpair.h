@@ -21,6 +21,8 @@ typedef struct {
   sphreal rho0;  /* kg/m^3 */
   sphreal avisc; /* artificial viscosity: 2 alpha c_s h, m^2/s */
   sphreal ddt;   /* density diffusion: 2 delta c_s h, m^2/s; 0 without */
+  sphreal shift; /* shifting: 2 A h V_max, m^2/s; 0 without */
+  sphreal wdp;   /* shifting: 1/W(dp) without norm */
   sphreal g[3];  /* density diffusion, Fourtakas: f/c_s^2, 1/m; 0 for Molteni-Colagrossi */
 } SphPairConst;
 
@@ -93,6 +95,35 @@ SPH_INLINE sphreal sph_xsph(sphreal mb, sphreal rhoa, sphreal rhob, sphreal W)
   return (sphreal)2 * mb / (rhoa + rhob) * W;
 }
 
+/*
+  Shifting velocity, factor of x_ab (1/s): Sun, Colagrossi, Marrone, Zhang, Comput. Methods Appl. Mech. Eng. 315 (2017), Eq. 4, as a
+  velocity: -2 A h V_max Sum V_b [1 + 0.2 (W/W(dp))^4] grad W. w = W without norm.
+*/
+SPH_INLINE sphreal sph_shift(const SphPairConst *c, sphreal Vb, sphreal w, sphreal F)
+{
+  const sphreal r = w * c->wdp, r2 = r * r;
+  return -c->shift * Vb * ((sphreal)1 + (sphreal)0.2 * r2 * r2) * F;
+}
+
+/*
+  What part of the shifting velocity a marker keeps: none at a free surface, where the divergence of the position -Sum V_b r2 F falls
+  short of dim (Lee et al., J. Comput. Phys. 227 (2008)), nor in a second row of markers; all where the support is full.
+*/
+SPH_INLINE double sph_shift_keep(double div, double dim)
+{
+  const double keep = (div / dim - 0.9) / 0.07;
+  return keep < 0.0 ? 0.0 : (keep > 1.0 ? 1.0 : keep);
+}
+
+/*
+  Momentum that a marker takes along as it moves relative to the fluid, div(rho v dv), between fluid markers: factor of v in
+  dv_a/dt (1/s) for one of the pair; ux = dv . x_ab. Antisymmetric: Adami, Hu, Adams, J. Comput. Phys. 241 (2013), Eq. 13.
+*/
+SPH_INLINE sphreal sph_shift_momentum(sphreal mb, sphreal rho, sphreal ux, sphreal F)
+{
+  return mb * ux * F / rho;
+}
+
 #if defined(SPHIMPL_H)
 /* The constants from the parameters of a run. */
 SPH_INLINE SphPairConst sph_pair_const(const SphParams *p)
@@ -109,6 +140,8 @@ SPH_INLINE SphPairConst sph_pair_const(const SphParams *p)
   c.rho0 = (sphreal)p->rho0;
   c.avisc = (sphreal)(2.0 * p->alpha * p->cs * p->h);
   c.ddt = (sphreal)(p->diffusion == SPH_DIFFUSION_NONE ? 0.0 : 2.0 * p->delta * p->cs * p->h);
+  c.shift = (sphreal)(p->shifting == SPH_SHIFTING_NONE ? 0.0 : 2.0 * p->shiftfactor * p->h * p->vmax);
+  c.wdp = (sphreal)1 / sph_w(p->kernel, (sphreal)(p->dp / p->h));
   for (int k = 0; k < 3; k++)
     c.g[k] = (sphreal)(p->diffusion == SPH_DIFFUSION_FOURTAKAS && k < p->dim ? p->f[k] / (p->cs * p->cs) : 0.0);
   return c;
