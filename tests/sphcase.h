@@ -8,15 +8,15 @@
 
 typedef struct {
   PetscInt dim;
-  PetscReal dp, lo[3], hi[3];         /* domain, m */
-  PetscReal fluidlo[3], fluidhi[3];   /* block of fluid; all zero: the domain */
-  PetscBool periodic[3], wall[6];     /* xmin, xmax, ymin, ... */
-  PetscReal wallvelocity[6][3];       /* m/s, along the wall */
-  PetscReal rho, mu, vmax, f[3];      /* kg/m^3, Pa s, m/s, m/s^2 */
+  PetscReal dp, lo[3], hi[3];       /* domain, m */
+  PetscReal fluidlo[3], fluidhi[3]; /* block of fluid; all zero: the domain */
+  PetscBool periodic[3], wall[6];   /* xmin, xmax, ymin, ... */
+  PetscReal wallvelocity[6][3];     /* m/s, along the wall */
+  PetscReal rho, mu, vmax, f[3];    /* kg/m^3, Pa s, m/s, m/s^2 */
   SphKernelType kernel;
-  PetscReal hratio, xsph;             /* xsph < 0: the default */
+  PetscReal hratio, xsph; /* xsph < 0: the default */
   SphShiftingType shifting;
-  SphFillKeep keep;                   /* NULL: fill everything */
+  SphFillKeep keep; /* NULL: fill everything */
   void *ctx;
   /* Initial velocity (m/s) and pressure (Pa) at x; NULL for 0. */
   void (*initial)(const PetscReal x[3], void *ctx, PetscReal v[3], PetscReal *p);
@@ -42,7 +42,7 @@ static inline PetscErrorCode FlowFluid(const FlowCase *c, Sph *out)
   PetscCall(SphSetBodyForce(sph, c->f));
   PetscCall(SphSetDomain(sph, c->lo, c->hi));
   PetscCall(SphSetPeriodic(sph, c->periodic));
-  PetscCall(SphSetShifting(sph, c->shifting, 1.0));
+  PetscCall(SphSetShifting(sph, c->shifting, 2.0));
   if (c->xsph >= 0.0) PetscCall(SphSetXSPH(sph, c->xsph));
   PetscCall(SphSetFromOptions(sph));
   PetscCall(SphFillBox(c->dim, c->dp, block ? c->fluidlo : c->lo, block ? c->fluidhi : c->hi, c->keep, c->ctx, &n, &x));

@@ -50,7 +50,7 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   sph->par.lattice = PETSC_TRUE;
   sph->par.alpha = 0.1;
   sph->par.delta = 0.1;
-  sph->par.shiftfactor = 4.0;
+  sph->par.shiftfactor = 2.0;
   sph->par.cfl = 0.25;
   sph->par.dtfixed = PETSC_DECIDE;
   sph->par.reinit = SPH_REINIT_SHEPARD;

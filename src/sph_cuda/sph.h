@@ -76,7 +76,7 @@ FROND_EXTERN PetscErrorCode SphSetViscosityType(Sph sph, SphViscosityType type);
 FROND_EXTERN PetscErrorCode SphSetArtificialViscosity(Sph sph, PetscReal alpha);
 /* Density diffusion and its factor delta (default 0.1). */
 FROND_EXTERN PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal delta);
-/* Shifting velocity and its factor: 2 h V_max times the factor per unit concentration gradient. */
+/* Shifting velocity and its factor A, sphpair.h (default 2; large ones stir the fluid). */
 FROND_EXTERN PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor);
 FROND_EXTERN PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator);
 FROND_EXTERN PetscErrorCode SphSetKernel(Sph sph, SphKernelType kernel);

@@ -98,7 +98,7 @@ static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
   }
   if (!cpu->q) {
     cpu->stride = (sph->n + 31) / 16 * 16;
-    cpu->nq = SPH_NQ_BASE + (SphCpuTwoVelocities(&sph->par) ? 3 : 0) + SphCpuFluidWeight(&sph->par);
+    cpu->nq = SPH_NQ_BASE + (SphCpuTwoVelocities(&sph->par) ? 3 : 0) + (sph->par.diffusion != SPH_DIFFUSION_NONE);
     PetscCall(PetscMalloc((size_t)cpu->stride * (size_t)cpu->nq * real, &cpu->q));
     for (int k = 0; k < 3; k++) PetscCall(PetscCalloc1(sph->n, &cpu->xref[k]));
   }

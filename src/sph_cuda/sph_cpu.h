@@ -16,7 +16,7 @@ enum {
   SPH_Q_U = SPH_NQ_BASE, /* 3: velocity that moves densities, Eq. 10 (boundary: its own), m/s; only where it differs from V */
   SPH_NQ_MAX = SPH_NQ_BASE + 4
 };
-/* Last comes m/rho of fluid and 0 of boundary markers, the weight of density diffusion and shifting, when there is any. */
+/* Last comes m/rho of fluid and 0 of boundary markers, the weight of density diffusion, when there is any. */
 #define SPH_Q_DIF(uv) (SPH_NQ_BASE + ((uv) ? 3 : 0))
 
 /* Markers that share one list of neighbours: compact by the order within cells. */
@@ -41,20 +41,14 @@ typedef struct {
 typedef enum {
   SPH_SWEEP_AUX,   /* Eq. 11 for fluid markers, Adami extrapolation for boundary markers */
   SPH_SWEEP_RATES, /* Eqs. 4 and 5 */
-  SPH_SWEEP_SHIFT, /* adds what shifting carries to Eq. 5 */
+  SPH_SWEEP_SHIFT, /* adds the shifting velocity to that of Eq. 11 */
   SPH_SWEEP_SUM    /* Eq. 9 and its normalisation */
 } SphSweep;
 
-/* Whether the velocity that moves densities differs from that of the viscous term: XSPH, shifting, or extrapolated wall velocities. */
+/* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
 static inline int SphCpuTwoVelocities(const SphParams *p)
 {
-  return p->zeta > 0.0 || p->shifting != SPH_SHIFTING_NONE || p->wall == SPH_WALL_ADAMI;
-}
-
-/* Whether sums need a weight that is zero for boundary markers. */
-static inline int SphCpuFluidWeight(const SphParams *p)
-{
-  return p->diffusion != SPH_DIFFUSION_NONE || p->shifting != SPH_SHIFTING_NONE;
+  return p->zeta > 0.0 || p->wall == SPH_WALL_ADAMI;
 }
 
 /* Fill the prepared quantities from the state; after an auxiliary sweep only what that changed. */

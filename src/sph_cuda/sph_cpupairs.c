@@ -70,7 +70,7 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
     q[SPH_Q_VOL][i] = (sphreal)(sph->m[i] / rho);
     q[SPH_Q_P][i] = (sphreal)(p / (rho * rho));
   }
-  if (SphCpuFluidWeight(par))
+  if (par->diffusion != SPH_DIFFUSION_NONE)
     for (int i = i0; i < i1; i++) q[SPH_Q_DIF(uv)][i] = boundary ? (sphreal)0 : q[SPH_Q_VOL][i];
 }
 
@@ -167,65 +167,28 @@ SPH_INLINE void AuxFluid(const int kernel, const Sweep *w, const List *l, int i)
   w->sph->rate.dv[2][i] = (double)(c.zeta * sz);
 }
 
-/* XSPH velocity, Eq. 11, and the shifting velocity of a fluid marker, at most V_max/2. */
-SPH_INLINE void AuxShift(const int kernel, const Sweep *w, const List *l, int i)
+/* Shifting velocity of a fluid marker, at most V_max/2, added to that of Eq. 11. */
+SPH_INLINE void Shift(const int kernel, const Sweep *w, const List *l, int i)
 {
   const SphPairConst c = w->c;
   const SphParams *par = &w->sph->par;
-  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VX = l->q[SPH_Q_V],
-                          *restrict VY = l->q[SPH_Q_V + 1], *restrict VZ = l->q[SPH_Q_V + 2];
-  const sphreal *restrict M = l->q[SPH_Q_M], *restrict S = l->q[SPH_Q_S], *restrict VOL = l->q[SPH_Q_VOL];
-  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
-                vz = w->q[SPH_Q_V + 2][i];
-  const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i];
-  sphreal sx = 0, sy = 0, sz = 0, px = 0, py = 0, pz = 0, div = 0;
-#pragma omp simd reduction(+ : sx, sy, sz, px, py, pz, div)
+  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VOL = l->q[SPH_Q_VOL];
+  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i];
+  sphreal px = 0, py = 0, pz = 0, div = 0;
+#pragma omp simd reduction(+ : px, py, pz, div)
   for (int j = 0; j < l->n; j++) {
     const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], r2 = dx * dx + dy * dy + dz * dz;
-    const sphreal q = SPH_SQRT(r2) * c.hinv, W = sph_w(kernel, q), F = c.fnorm * sph_f(kernel, q);
-    const sphreal f = c.zeta * sph_xsph(M[j], rho, c.rho0 + c.rho0 * S[j], c.wnorm * W), g = sph_shift(&c, VOL[j], W, F);
+    const sphreal q = SPH_SQRT(r2) * c.hinv, F = c.fnorm * sph_f(kernel, q), g = sph_shift(&c, VOL[j], sph_w(kernel, q), F);
     div -= VOL[j] * r2 * F;
-    sx += f * (VX[j] - vx);
-    sy += f * (VY[j] - vy);
-    sz += f * (VZ[j] - vz);
     px += g * dx;
     py += g * dy;
     pz += g * dz;
   }
   const double u = sqrt((double)(px * px + py * py + pz * pz)), most = 0.5 * par->vmax;
   const double keep = sph_shift_keep((double)div, (double)par->dim) * (u > most ? most / u : 1.0);
-  w->sph->rate.dv[0][i] = (double)sx + keep * (double)px;
-  w->sph->rate.dv[1][i] = (double)sy + keep * (double)py;
-  w->sph->rate.dv[2][i] = (double)sz + keep * (double)pz;
-}
-
-/* Momentum that markers moving relative to the fluid carry, added to Eq. 5. */
-SPH_INLINE void ShiftMomentum(const int kernel, const Sweep *w, const List *l, int i)
-{
-  const SphPairConst c = w->c;
-  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VX = l->q[SPH_Q_V],
-                          *restrict VY = l->q[SPH_Q_V + 1], *restrict VZ = l->q[SPH_Q_V + 2];
-  const sphreal *restrict UX = l->q[SPH_Q_U], *restrict UY = l->q[SPH_Q_U + 1], *restrict UZ = l->q[SPH_Q_U + 2],
-                          *restrict D = l->q[SPH_Q_DIF(1)], *restrict M = l->q[SPH_Q_M], *restrict S = l->q[SPH_Q_S];
-  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
-                vz = w->q[SPH_Q_V + 2][i];
-  const sphreal ux = w->q[SPH_Q_U][i] - vx, uy = w->q[SPH_Q_U + 1][i] - vy, uz = w->q[SPH_Q_U + 2][i] - vz;
-  const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i];
-  sphreal ax = 0, ay = 0, az = 0;
-#pragma omp simd reduction(+ : ax, ay, az)
-  for (int j = 0; j < l->n; j++) {
-    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], r2 = dx * dx + dy * dy + dz * dz;
-    const sphreal F = c.fnorm * sph_f(kernel, SPH_SQRT(r2) * c.hinv), m = D[j] > (sphreal)0 ? M[j] : (sphreal)0;
-    const sphreal fi = sph_shift_momentum(m, rho, ux * dx + uy * dy + uz * dz, F);
-    const sphreal fj = sph_shift_momentum(m, c.rho0 + c.rho0 * S[j],
-                                          (UX[j] - VX[j]) * dx + (UY[j] - VY[j]) * dy + (UZ[j] - VZ[j]) * dz, F);
-    ax += fi * vx + fj * VX[j];
-    ay += fi * vy + fj * VY[j];
-    az += fi * vz + fj * VZ[j];
-  }
-  w->sph->rate.a[0][i] += (double)ax;
-  w->sph->rate.a[1][i] += (double)ay;
-  w->sph->rate.a[2][i] += (double)az;
+  w->sph->rate.dv[0][i] = (par->zeta > 0.0 ? w->sph->rate.dv[0][i] : 0.0) + keep * (double)px;
+  w->sph->rate.dv[1][i] = (par->zeta > 0.0 ? w->sph->rate.dv[1][i] : 0.0) + keep * (double)py;
+  w->sph->rate.dv[2][i] = (par->zeta > 0.0 ? w->sph->rate.dv[2][i] : 0.0) + keep * (double)pz;
 }
 
 /* Pressure (as density) and velocity of a boundary marker: Adami, Hu, Adams, J. Comput. Phys. 231 (2012), Eqs. 22-27. */
@@ -373,8 +336,7 @@ static const Kernel rates[2][3][2][2] = {{SPH_RATES_ROW(0, 0), SPH_RATES_ROW(0, 
     name(1, w, l, i);                                                                                                            \
   }
 SPH_OTHER(AuxFluid)
-SPH_OTHER(AuxShift)
-SPH_OTHER(ShiftMomentum)
+SPH_OTHER(Shift)
 SPH_OTHER(AuxBoundary)
 SPH_OTHER(Sum)
 
@@ -384,7 +346,7 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
   const SphParams *p = &sph->par;
   const SphCpu *cpu = (const SphCpu *)sph->data;
   const SphGrid *g = &cpu->grid;
-  const int ncell = g->n[0] * g->n[1] * g->n[2], nq = sweep == SPH_SWEEP_RATES || sweep == SPH_SWEEP_SHIFT ? (int)cpu->nq : SPH_NQ_BASE;
+  const int ncell = g->n[0] * g->n[1] * g->n[2], nq = sweep == SPH_SWEEP_RATES ? (int)cpu->nq : SPH_NQ_BASE;
   Kernel fluid = NULL, boundary = NULL;
   Sweep w = {.c = sph_pair_const(p), .sph = sph, .cpu = cpu};
 
@@ -392,14 +354,11 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
   if (sweep == SPH_SWEEP_RATES)
     fluid = boundary = rates[p->kernel][p->viscosity][SphCpuTwoVelocities(p)][p->diffusion != SPH_DIFFUSION_NONE];
   else if (sweep == SPH_SWEEP_SHIFT)
-    fluid = p->kernel ? ShiftMomentum_1 : ShiftMomentum_0;
+    fluid = p->kernel ? Shift_1 : Shift_0;
   else if (sweep == SPH_SWEEP_SUM)
     fluid = p->kernel ? Sum_1 : Sum_0;
   else {
-    if (p->shifting != SPH_SHIFTING_NONE)
-      fluid = p->kernel ? AuxShift_1 : AuxShift_0;
-    else if (p->zeta > 0.0)
-      fluid = p->kernel ? AuxFluid_1 : AuxFluid_0;
+    if (p->zeta > 0.0) fluid = p->kernel ? AuxFluid_1 : AuxFluid_0;
     if (p->wall == SPH_WALL_ADAMI) boundary = p->kernel ? AuxBoundary_1 : AuxBoundary_0;
   }
 #pragma omp parallel num_threads((int)cpu->threads)

@@ -218,7 +218,7 @@ PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal 
 PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor)
 {
   PetscFunctionBegin;
-  PetscCall(CheckRange(sph, "shifting_factor", factor, 0.0, 100.0));
+  PetscCall(CheckRange(sph, "shifting_factor", factor, 0.0, 5.0));
   sph->par.shifting = (int)type;
   sph->par.shiftfactor = factor;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -97,7 +97,8 @@ SPH_INLINE sphreal sph_xsph(sphreal mb, sphreal rhoa, sphreal rhob, sphreal W)
 
 /*
   Shifting velocity, factor of x_ab (1/s): Sun, Colagrossi, Marrone, Zhang, Comput. Methods Appl. Mech. Eng. 315 (2017), Eq. 4, as a
-  velocity: -2 A h V_max Sum V_b [1 + 0.2 (W/W(dp))^4] grad W. w = W without norm.
+  velocity: -2 A h V_max Sum V_b [1 + 0.2 (W/W(dp))^4] grad W; A = 1 there. It moves positions only: density and velocity go along,
+  so that mass and momentum are conserved exactly. w = W without norm.
 */
 SPH_INLINE sphreal sph_shift(const SphPairConst *c, sphreal Vb, sphreal w, sphreal F)
 {
@@ -113,15 +114,6 @@ SPH_INLINE double sph_shift_keep(double div, double dim)
 {
   const double keep = (div / dim - 0.9) / 0.07;
   return keep < 0.0 ? 0.0 : (keep > 1.0 ? 1.0 : keep);
-}
-
-/*
-  Momentum that a marker takes along as it moves relative to the fluid, div(rho v dv), between fluid markers: factor of v in
-  dv_a/dt (1/s) for one of the pair; ux = dv . x_ab. Antisymmetric: Adami, Hu, Adams, J. Comput. Phys. 241 (2013), Eq. 13.
-*/
-SPH_INLINE sphreal sph_shift_momentum(sphreal mb, sphreal rho, sphreal ux, sphreal F)
-{
-  return mb * ux * F / rho;
 }
 
 #if defined(SPHIMPL_H)
