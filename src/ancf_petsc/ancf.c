@@ -26,7 +26,7 @@ static PetscErrorCode AncfRegister(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfPrefixTS(Ancf ancf)
+PetscErrorCode AncfPrefixTS(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCall(TSSetOptionsPrefix(ancf->ts, ancf->prefix));
@@ -50,6 +50,7 @@ PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf)
   a->comm = comm;
   a->substeps = 1;
   a->loadscale = 1;
+  a->groupnodes = ANCF_DEFAULT_GROUP;
   a->naxial = ANCF_DEFAULT_AXIAL;
   a->nbending = ANCF_DEFAULT_BENDING;
   PetscCall(AncfTSCreate(a));
@@ -225,10 +226,24 @@ PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  AncfSetGroupNodes - beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in
+  cache (default 1000). A set of fewer than twice as many nodes is one group, and so is any set whose TS was asked for by
+  AncfGetTS() before AncfSetUp().
+*/
+PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes)
+{
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_group_nodes cannot change after AncfSetUp()");
+  PetscCheck(nodes >= 1, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "-ancf_group_nodes %" PetscInt_FMT " must be at least 1", nodes);
+  ancf->groupnodes = nodes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfSetFromOptions(Ancf ancf)
 {
   PetscReal g[3];
-  PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending;
+  PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending, group = ancf->groupnodes;
   PetscReal rho = ancf->fluiddensity;
   AncfStrain strain = ancf->strain;
   PetscBool flg, flg2;
@@ -252,7 +267,11 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   PetscCall(PetscOptionsInt("-ancf_quadrature_bending", "Gauss points per element for the bending energy, 2..8",
                             "AncfSetQuadrature", bending, &bending, &flg2));
   if (flg || flg2) PetscCall(AncfSetQuadrature(ancf, axial, bending));
+  PetscCall(PetscOptionsInt("-ancf_group_nodes", "Nodes per group of beams with a TS of its own", "AncfSetGroupNodes", group,
+                            &group, &flg));
+  if (flg) PetscCall(AncfSetGroupNodes(ancf, group));
   PetscOptionsEnd();
+  ancf->fromoptions = PETSC_TRUE;
   PetscCall(TSSetFromOptions(ancf->ts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -297,7 +316,7 @@ static void AncfSetUpNodes(Ancf ancf)
   }
 }
 
-static PetscErrorCode AncfSetUpBatches(Ancf ancf)
+PetscErrorCode AncfSetUpBatches(Ancf ancf)
 {
   PetscInt n = 0;
 
@@ -339,7 +358,10 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   PetscCall(AncfSetUpBatches(ancf));
   PetscCall(AncfSetUpWeight(ancf));
   PetscCall(AncfMassFactor(ancf));
-  PetscCall(AncfTSSetUp(ancf));
+  if (ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
+    PetscCall(AncfGroupSetUp(ancf));
+  else
+    PetscCall(AncfTSSetUp(ancf));
   ancf->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -374,6 +396,9 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
   if (ancf->nbeams > 10) PetscCall(PetscViewerASCIIPrintf(viewer, "and %" PetscInt_FMT " more beams\n", ancf->nbeams - 10));
   if (ancf->setup) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "form: %s\n", AncfForms[ancf->form]));
+    if (ancf->ngroups)
+      PetscCall(
+          PetscViewerASCIIPrintf(viewer, "groups %" PetscInt_FMT ", each with a TS as this one of the first\n", ancf->ngroups));
     PetscCall(TSView(ancf->ts, viewer));
   }
   PetscCall(PetscViewerASCIIPopTab(viewer));
@@ -387,6 +412,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscFunctionBegin;
   if (!ancf || !*ancf) PetscFunctionReturn(PETSC_SUCCESS);
   a = *ancf;
+  PetscCall(AncfGroupDestroy(a));
   PetscCall(AncfTSDestroy(a));
   PetscCall(PetscFree6(a->e, a->v, a->a, a->load, a->weight, a->rest));
   PetscCall(PetscFree2(a->fixed, a->mass));
@@ -399,10 +425,12 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The TS that integrates the beams, for choices without an option of ours; borrowed. */
+/* The TS that integrates the beams (the first group's, see AncfSetGroupNodes()), for choices without an option of ours; borrowed.
+ */
 PetscErrorCode AncfGetTS(Ancf ancf, TS *ts)
 {
   PetscFunctionBegin;
+  ancf->exposed = PETSC_TRUE;
   *ts = ancf->ts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -456,14 +484,19 @@ PetscInt AncfFindBeam(Ancf ancf, PetscInt node)
 
 PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear)
 {
-  PetscInt s = 0, n = 0, l = 0;
+  PetscInt most[3] = {0}, n[3] = {0};
 
   PetscFunctionBegin;
-  PetscCall(TSGetStepNumber(ancf->ts, &s));
-  PetscCall(TSGetSNESIterations(ancf->ts, &n));
-  PetscCall(TSGetKSPIterations(ancf->ts, &l));
-  if (steps) *steps = s - ancf->uncounted[0];
-  if (newton) *newton = n - ancf->uncounted[1];
-  if (linear) *linear = l - ancf->uncounted[2];
+  for (PetscInt k = 0; k < PetscMax(1, ancf->ngroups); k++) {
+    Ancf g = ancf->ngroups ? ancf->groups[k] : ancf;
+
+    PetscCall(TSGetStepNumber(g->ts, &n[0]));
+    PetscCall(TSGetSNESIterations(g->ts, &n[1]));
+    PetscCall(TSGetKSPIterations(g->ts, &n[2]));
+    for (int i = 0; i < 3; i++) most[i] = PetscMax(most[i], n[i] - g->uncounted[i]);
+  }
+  if (steps) *steps = most[0];
+  if (newton) *newton = most[1];
+  if (linear) *linear = most[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,6 +43,7 @@ FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
 FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
 FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
+FROND_EXTERN PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes);
 FROND_EXTERN PetscErrorCode AncfSetFromOptions(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfSetUp(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer);
@@ -90,7 +91,7 @@ FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal
 /* Force of the supports (clamped and pinned ends) on the beams, and of gravity less buoyancy, N. */
 FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
 FROND_EXTERN PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3]);
-/* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations. */
+/* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations; the largest over the groups of beams. */
 FROND_EXTERN PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear);
 
 /* Shape functions S1..S4 of Eq. 19 and their x-derivatives at xi in [0,1] of an element of length l (m). */

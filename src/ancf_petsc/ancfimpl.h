@@ -38,6 +38,9 @@ struct _p_Ancf {
   PetscReal gravity[3], fluiddensity;
   PetscBool setup;
   AncfForm form;
+  PetscBool fromoptions, exposed; /* AncfSetFromOptions() and AncfGetTS() were called */
+  Ancf whole, *groups;            /* see ancfgroup.c; whole is NULL but in a group */
+  PetscInt ngroups, groupnodes, firstbeam;
 
   PetscReal t;
   PetscReal *e, *v, *a; /* state, nodes x 6 */
@@ -69,6 +72,7 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 #define ANCF_DEFAULT_AXIAL 3
 #define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
+#define ANCF_DEFAULT_GROUP 1000 /* nodes; 1 kB each in the vectors of TSALPHA2: fits a level-2 cache */
 
 #if defined(PETSC_UNLIMITED)
   #define ANCF_UNLIMITED PETSC_UNLIMITED
@@ -86,11 +90,14 @@ extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
 
 /* ancf.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
+extern PetscErrorCode AncfSetUpBatches(Ancf ancf);
+extern PetscErrorCode AncfPrefixTS(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
 
 /* ancfts.c: Push and Pull copy the state into and out of the vectors of TS; Push makes TS restart. */
 extern PetscErrorCode AncfTSCreate(Ancf ancf);
 extern PetscErrorCode AncfTSDestroy(Ancf ancf);
+extern PetscErrorCode AncfChooseForm(Ancf ancf);
 extern PetscErrorCode AncfTSSetUp(Ancf ancf);
 extern PetscErrorCode AncfTSPush(Ancf ancf);
 extern PetscErrorCode AncfTSPull(Ancf ancf);
@@ -109,7 +116,14 @@ extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J);
 /* Rows of eliminated coordinates: f = x, or 0 when x is NULL. */
 extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
 
+/* ancfgroup.c */
+extern PetscErrorCode AncfGroupSetUp(Ancf ancf);
+extern PetscErrorCode AncfGroupDestroy(Ancf ancf);
+extern PetscErrorCode AncfGroupPush(Ancf ancf);
+extern PetscErrorCode AncfGroupSolve(Ancf ancf, PetscReal t);
+
 /* ancfadvance.c */
+extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
 
 /* ancfalpha.c */

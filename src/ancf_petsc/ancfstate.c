@@ -4,15 +4,19 @@
 /* PETSC_ERR_FP with beam, node and time when an array of nodes x 6 holds a NaN or an infinity. */
 PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t)
 {
+  PetscReal sum = 0;
+
   PetscFunctionBegin;
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) sum += 0 * x[i]; /* NaN if any is not finite */
+  if (PetscLikely(sum == 0)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     PetscInt b;
 
     if (PetscLikely(!PetscIsInfOrNanReal(x[i]))) continue;
     b = AncfFindBeam(ancf, i / 6);
     SETERRQ(ancf->comm, PETSC_ERR_FP,
-            "Beam %" PetscInt_FMT ", node %" PetscInt_FMT ": %s coordinate %" PetscInt_FMT " is %g at t = %g s", b,
-            i / 6 - ancf->beams[b].node, what, i % 6, (double)x[i], (double)t);
+            "Beam %" PetscInt_FMT ", node %" PetscInt_FMT ": %s coordinate %" PetscInt_FMT " is %g at t = %g s",
+            ancf->firstbeam + b, i / 6 - ancf->beams[b].node, what, i % 6, (double)x[i], (double)t);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -276,7 +276,7 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(ancf->backup));
-  PetscCall(PetscFree2(ancf->history, ancf->vprev));
+  if (!ancf->whole) PetscCall(PetscFree2(ancf->history, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
   PetscCall(MatDestroy(&ancf->J));
@@ -304,7 +304,7 @@ static PetscErrorCode AncfSetUpSymplectic(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfChooseForm(Ancf ancf)
+PetscErrorCode AncfChooseForm(Ancf ancf)
 {
   TSType type;
   const size_t n = sizeof(ancf_types) / sizeof(ancf_types[0]);
@@ -412,6 +412,10 @@ PetscErrorCode AncfTSPush(Ancf ancf)
   PetscScalar *y;
 
   PetscFunctionBegin;
+  if (ancf->ngroups) {
+    PetscCall(AncfGroupPush(ancf));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(TSSetTime(ancf->ts, ancf->t));
   PetscCall(TSRestartStep(ancf->ts));
   ancf->restart = PETSC_TRUE;

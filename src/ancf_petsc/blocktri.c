@@ -356,7 +356,7 @@ static PetscErrorCode PCSetUp_BlockTri(PC pc)
   }
   if (t->source) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < t->nbatches; k++) PetscCall(Extract(P, t, &t->batches[k]));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (t->nbatches >= 64)
   for (PetscInt k = 0; k < t->nbatches; k++) {
     const Batch *b = &t->batches[k];
     Lanes *f = t->factor + 3 * (size_t)(t->bs * t->bs) * b->offset;
@@ -376,7 +376,7 @@ static PetscErrorCode PCApply_BlockTri(PC pc, Vec X, Vec Y)
   PetscCall(GetContext(pc, &t));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(Y, &y));
-#pragma omp parallel for schedule(static) num_threads(t->nthreads)
+#pragma omp parallel for schedule(static) num_threads(t->nthreads) if (t->nbatches >= 64)
   for (PetscInt k = 0; k < t->nbatches; k++) {
     const Batch *b = &t->batches[k];
     Lanes *w = t->work + (size_t)Thread() * t->nwork;
