@@ -88,8 +88,7 @@ PetscErrorCode CoupleSetFromOptions(Couple c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every surface's markers at the structures' own time plus ahead, to the fluid. */
-static PetscErrorCode MoveMarkers(Couple c, PetscReal ahead)
+PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Kinematics, 0, 0, 0, 0));
@@ -116,7 +115,7 @@ PetscErrorCode CoupleSetUp(Couple c)
     PetscCall(SphAddBoundary(c->sph, s->n, s->x, s->v, volume, depth, &s->group));
   }
   PetscCall(SphSetUp(c->sph));
-  PetscCall(MoveMarkers(c, 0.0));
+  PetscCall(CoupleMoveMarkers(c, 0.0));
   c->setup = PETSC_TRUE;
   PetscCall(CoupleBalanceStart(c));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -209,13 +208,13 @@ PetscErrorCode CoupleStep(Couple c, PetscReal tmax, PetscReal *taken)
   PetscCall(SphGetTime(c->sph, &t, NULL));
   PetscCall(ChooseStep(c, tmax, &dt));
   PetscCall(SphStepBegin(c->sph, dt));
-  PetscCall(MoveMarkers(c, 0.5 * dt));
+  PetscCall(CoupleMoveMarkers(c, 0.5 * dt));
   PetscCall(SphStepEnd(c->sph));
   PetscCall(Transfer(c));
   PetscCall(PetscLogEventBegin(COUPLE_Advance, 0, 0, 0, 0));
   for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.advance)(c->slot[i].surface, t + dt));
   PetscCall(PetscLogEventEnd(COUPLE_Advance, 0, 0, 0, 0));
-  PetscCall(MoveMarkers(c, 0.0));
+  PetscCall(CoupleMoveMarkers(c, 0.0));
   PetscCall(CoupleBalanceAdd(c, dt));
   if (taken) *taken = dt;
   PetscFunctionReturn(PETSC_SUCCESS);

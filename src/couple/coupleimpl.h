@@ -35,6 +35,9 @@ struct _p_Couple {
 
 extern PetscLogEvent COUPLE_Kinematics, COUPLE_Transfer, COUPLE_Advance;
 
+/* couple.c: every surface's markers at the structures' own time plus ahead (s), to the fluid. */
+extern PetscErrorCode CoupleMoveMarkers(Couple couple, PetscReal ahead);
+
 /* couplebalance.c */
 extern PetscErrorCode CoupleBalanceStart(Couple couple);
 extern PetscErrorCode CoupleBalanceAdd(Couple couple, PetscReal dt);

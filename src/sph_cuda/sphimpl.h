@@ -57,6 +57,14 @@ typedef struct {
   double *ds;    /* d(rho/rho0)/dt, 1/s */
 } SphRates;
 
+/* A state on its way into a buffer or out of it; counting only when there is none (sphstate.c). */
+typedef struct {
+  char *p;
+  size_t size, at; /* bytes */
+  enum { SPH_BUFFER_COUNT, SPH_BUFFER_SAVE, SPH_BUFFER_LOAD } way;
+} SphBuffer;
+extern PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t bytes);
+
 typedef struct _SphOps {
   PetscErrorCode (*setup)(Sph);
   PetscErrorCode (*build)(Sph);                    /* sort markers and find cell ranges when needed */
@@ -71,6 +79,7 @@ typedef struct _SphOps {
   PetscErrorCode (*push)(Sph);                     /* host arrays changed */
   PetscErrorCode (*destroy)(Sph);
   PetscErrorCode (*check)(Sph);                    /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
+  PetscErrorCode (*state)(Sph, SphBuffer *);       /* move the search structure; NULL: it is built anew when a state is saved or restored */
 } SphOps;
 
 struct _p_Sph {
