@@ -183,27 +183,26 @@ static inline void ShellAdd(const AncfLanes K[ANCF_TANGENT], AncfLanes mass, Anc
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       const AncfLanes aa = K[sym[i][j]], bb = K[6 + sym[i][j]], cc = K[12 + sym[i][j]];
-      const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j],
-                      cb = K[36 + 3 * j + i];
+      const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j];
 
-      D0[6 * i + j] += bb;
       D0[6 * i + 3 + j] -= ba;
-      D0[6 * (3 + i) + j] -= ab;
-      D0[6 * (3 + i) + 3 + j] += aa;
       U[6 * i + j] = -bb;
       U[6 * i + 3 + j] = -bc;
       U[6 * (3 + i) + j] = ab;
       U[6 * (3 + i) + 3 + j] = ac;
-      D1[6 * i + j] = bb;
       D1[6 * i + 3 + j] = bc;
-      D1[6 * (3 + i) + j] = cb;
+      if (j < i) continue; /* the lower triangles are not read */
+      D0[6 * i + j] += bb;
+      D0[6 * (3 + i) + 3 + j] += aa;
+      D1[6 * i + j] = bb;
       D1[6 * (3 + i) + 3 + j] = cc;
     }
   for (int c = 0; c < 3; c++)
     for (int i = 0; i < 2; i++)
       for (int j = 0; j < 2; j++) {
-        D0[6 * (3 * i + c) + 3 * j + c] += m[i][j];
         U[6 * (3 * i + c) + 3 * j + c] += m[i][2 + j];
+        if (j < i) continue;
+        D0[6 * (3 * i + c) + 3 * j + c] += m[i][j];
         D1[6 * (3 * i + c) + 3 * j + c] += m[2 + i][2 + j];
       }
 }
@@ -371,17 +370,24 @@ static PetscErrorCode AncfCreateStored(Ancf ancf, PetscInt bs, Mat *J)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Matrix for this preconditioner: unassembled for PCBLOCKTRI unless -ancf_mat_type is given, else MATSEQBAIJ by default. */
+/*
+  Matrix for this preconditioner: unassembled for PCBLOCKTRI, else MATSEQBAIJ by default. Unless told otherwise, a set of enough
+  beams to fill half the vector lanes takes PCBLOCKTRI, a smaller one the block ILU(0), exact for these matrices.
+*/
 PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J)
 {
-  PetscBool blocktri, given;
-  char key[256];
+  PetscBool blocktri, mat, given;
+  char prefix[256];
 
   PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%sancf_", ancf->prefix ? ancf->prefix : ""));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-mat_type", &mat));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-pc_type", &given));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &blocktri));
+  if (blocktri && !given && !mat && !ancf->exposed && bs == 6 && 2 * ancf->nbeams >= ANCF_LANES)
+    PetscCall(PCSetType(pc, PCBLOCKTRI));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBLOCKTRI, &blocktri));
-  PetscCall(PetscSNPrintf(key, sizeof(key), "-%sancf_mat_type", ancf->prefix ? ancf->prefix : ""));
-  PetscCall(PetscOptionsHasName(NULL, NULL, key, &given));
-  if (blocktri && bs == 6 && !given)
+  if (blocktri && bs == 6 && !mat)
     PetscCall(AncfCreateShell(ancf, J));
   else
     PetscCall(AncfCreateStored(ancf, bs, J));
