@@ -208,6 +208,7 @@ static PetscErrorCode BodySetUp(Rigid rigid, PetscInt i)
   }
   QuatNormalize(b->q);
   RigidBodySetOmega(b, s->omega);
+  RigidTableApply(b, rigid->t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,7 +298,11 @@ PetscErrorCode RigidDestroy(Rigid *rigid)
 {
   PetscFunctionBegin;
   if (!*rigid) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < (*rigid)->n; i++) PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
+  for (PetscInt i = 0; i < (*rigid)->n; i++) {
+    PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
+    PetscCall(PetscFree((*rigid)->body[i].tabletime));
+    PetscCall(PetscFree((*rigid)->body[i].table));
+  }
   PetscCall(RigidSystemDestroy(*rigid));
   PetscCall(RigidContactDestroy(&(*rigid)->contact));
   PetscCall(PetscFree((*rigid)->prefix));
@@ -383,6 +388,7 @@ PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t)
 {
   PetscFunctionBegin;
   rigid->t = t;
+  for (PetscInt i = 0; i < rigid->n && rigid->setup; i++) RigidTableApply(&rigid->body[i], t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -514,6 +520,7 @@ static PetscErrorCode RigidSubstep(Rigid rigid, PetscReal h)
     if (!jointed) RigidBodyEnd(rigid, i, h);
   }
   if (rigid->system) PetscCall(RigidSystemEnd(rigid, h));
+  rigid->t += h;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
