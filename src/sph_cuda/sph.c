@@ -273,6 +273,23 @@ PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
 }
 
 /*@
+  SphStepEvaluate - Second-stage rates and boundary forces for the boundary motion as set now; may be repeated with another
+  motion before SphStepEnd(), which then takes the last ones. For couplings that iterate on the forces.
+
+  Errors: outside a step; with the Verlet integrator, which has no second stage.
+@*/
+PetscErrorCode SphStepEvaluate(Sph sph)
+{
+  PetscFunctionBegin;
+  PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEvaluate() was called without SphStepBegin()");
+  PetscCheck(sph->par.integrator != SPH_INTEGRATOR_VERLET, sph->comm, PETSC_ERR_SUP,
+             "sph_integrator = verlet has no second stage to evaluate again: use rk2 or symplectic");
+  PetscCall(EvaluateRates(sph));
+  sph->evaluated = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   SphStepEnd - Second stage: rates and boundary forces at t + dt/2 (verlet: those at t stay), fluid state at t + dt.
 
   Errors: PETSC_ERR_FP naming field, marker, step and time when a value is not finite (every -sph_check_every steps).
@@ -281,7 +298,8 @@ PetscErrorCode SphStepEnd(Sph sph)
 {
   PetscFunctionBegin;
   PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEnd() was called without SphStepBegin()");
-  if (sph->par.integrator != SPH_INTEGRATOR_VERLET) PetscCall(EvaluateRates(sph));
+  if (sph->par.integrator != SPH_INTEGRATOR_VERLET && !sph->evaluated) PetscCall(EvaluateRates(sph));
+  sph->evaluated = PETSC_FALSE;
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
   sph->verletspan = sph->verletstep % SPH_VERLET_EVERY ? sph->dt + sph->dtold : 0.0;
   sph->verletstep++;

@@ -110,6 +110,7 @@ FROND_EXTERN PetscErrorCode SphGetCounts(Sph sph, PetscInt *fluid, PetscInt *bou
 /* The largest stable time step now (acoustic, force and viscous limits), or the fixed one after checking it. */
 FROND_EXTERN PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt);
 FROND_EXTERN PetscErrorCode SphStepBegin(Sph sph, PetscReal dt);
+FROND_EXTERN PetscErrorCode SphStepEvaluate(Sph sph);
 FROND_EXTERN PetscErrorCode SphStepEnd(Sph sph);
 FROND_EXTERN PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step);
 

@@ -106,7 +106,7 @@ struct _p_Sph {
 
   PetscReal t, dt;              /* time and current step, s */
   PetscInt  step;
-  PetscBool insidestep, fixedwarned;
+  PetscBool insidestep, fixedwarned, evaluated; /* evaluated: second-stage rates are there already */
   PetscInt  verletstep;         /* steps since stn was last invalid: 0 asks for an Euler step */
   PetscReal dtold, verletspan;  /* s; span of the Verlet step in progress, 0 for Euler */
   PetscReal evaluations;        /* marker right-hand sides evaluated */
