@@ -81,6 +81,10 @@ FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
 FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
 /* Upper bound on the step, s; PETSC_DECIDE for none. */
 FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax);
+/* Strong coupling: at most n iterations per step until the forces agree to a relative tolerance; 1 is the staggered step. */
+FROND_EXTERN PetscErrorCode CoupleSetIterations(Couple couple, PetscInt n, PetscReal tolerance, PetscReal relaxation);
+/* Iterations made since set-up, and steps that missed the tolerance; either may be NULL. */
+FROND_EXTERN PetscErrorCode CoupleGetIterations(Couple couple, PetscInt *iterations, PetscInt *unconverged);
 FROND_EXTERN PetscErrorCode CoupleSetFromOptions(Couple couple);
 /* Gives every surface's markers to the fluid and sets the fluid up. Add the fluid markers before. */
 FROND_EXTERN PetscErrorCode CoupleSetUp(Couple couple);

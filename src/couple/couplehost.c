@@ -1,5 +1,6 @@
 /*
-  couplehost.c - structures given by nodes and shape functions: motion of BCE markers on them, and the transposed transfer of forces.
+  couplehost.c - structures given by nodes and shape functions: motion of BCE markers on them, and the transposed transfer of
+  forces.
 
   A section at r = sum S_j q_j with the tangent t = r_s/|r_s|, r_s = sum S'_j q_j, turns with w = t x r_s'/|r_s|: the turning of
   the tangent without spin about it, which the nodes have no coordinate for. A marker at offset o moves with r' + w x o. A force F
@@ -20,8 +21,8 @@ typedef struct {
   PetscReal *d1; /* per section with slopes: transported unit normal at the structure's own time, 3 */
   PetscReal *Q;  /* kept here when the host has no array for it */
   /* of the last kinematics call */
-  PetscReal *q, *qdot;         /* nodes, nnodes x 3 */
-  PetscReal *r, *t, *len, *o;  /* per section: point, tangent (3), |r_s|; per marker: offset (3) */
+  PetscReal *q, *qdot;        /* nodes, nnodes x 3 */
+  PetscReal *r, *t, *len, *o; /* per section: point, tangent (3), |r_s|; per marker: offset (3) */
 } Host;
 
 /* Motion of one section: velocity and acceleration of its point, w and dw/dt. */
@@ -317,9 +318,9 @@ static PetscErrorCode View_Host(CoupleSurface surface, PetscViewer viewer)
   if (h->ops.view)
     PetscCall((*h->ops.view)(h->ctx, viewer));
   else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  host %s: %" PetscInt_FMT " nodes, %" PetscInt_FMT " sections, %" PetscInt_FMT
-                                             " markers\n",
-                                     surface->name, h->nnodes, h->nsections, h->n));
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer, "  host %s: %" PetscInt_FMT " nodes, %" PetscInt_FMT " sections, %" PetscInt_FMT " markers\n", surface->name,
+        h->nnodes, h->nsections, h->n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -378,8 +379,8 @@ static PetscErrorCode CheckMarkers(MPI_Comm comm, const char name[], const Coupl
   PetscFunctionBegin;
   for (PetscInt i = 0; i < p->nmarkers; i++) {
     PetscCheck(p->section[i] >= (i ? p->section[i - 1] : 0) && p->section[i] < p->nsections, comm, PETSC_ERR_ARG_OUTOFRANGE,
-               "surface %s, marker %" PetscInt_FMT ": section %" PetscInt_FMT " must be in [0, %" PetscInt_FMT ") and ascend", name, i,
-               p->section[i], p->nsections);
+               "surface %s, marker %" PetscInt_FMT ": section %" PetscInt_FMT " must be in [0, %" PetscInt_FMT ") and ascend",
+               name, i, p->section[i], p->nsections);
     PetscCheck(p->slope || !p->offset || (p->offset[2 * i] == 0.0 && p->offset[2 * i + 1] == 0.0), comm, PETSC_ERR_ARG_INCOMP,
                "surface %s, marker %" PetscInt_FMT ": offset (%g, %g) m needs slopes; without them it must be 0", name, i,
                (double)p->offset[2 * i], (double)p->offset[2 * i + 1]);
@@ -508,7 +509,7 @@ PetscErrorCode CoupleSurfaceHostGetSpec(CoupleSurface surface, CoupleHostSpec *s
 
   PetscFunctionBegin;
   PetscCall(CheckHost(surface));
-  *spec = (CoupleHostSpec){h->dim, h->nnodes, h->direction, h->nsections, h->rowstart, h->node,  h->shape,
-                           h->slope, h->n,    h->section,   h->offset,    h->volume,   h->depth};
+  *spec = (CoupleHostSpec){h->dim,   h->nnodes, h->direction, h->nsections, h->rowstart, h->node, h->shape,
+                           h->slope, h->n,      h->section,   h->offset,    h->volume,   h->depth};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,15 +1,14 @@
 /*
   couplehost.h - a host code's own structure in the coupling: nodes, shape functions, generalised forces S^T F.
 
-  The host owns its mesh, its state and its integrator. It describes once how BCE markers hang on its nodes, gives the nodes' motion
-  when asked, and receives the generalised nodal forces that hold over the step it then takes. A section is a point
-  r = sum_j S_j q_j of the structure, q_j the host's nodes; S are its shape functions there. Two kinds:
-    without slopes: the section's markers lie at r, as on a mesh of solid elements;
-    with slopes: r_s = sum_j S'_j q_j is a tangent as well, and markers lie off r on a rigid cross-section normal to it, as on the
-    disks of a beam's axis (Sect. 2.4 of Pazouki, Serban, Negrut) or across the thickness of a plate strip.
-  Transfer of a force F on a marker at offset o: Q_j = S_j F + S'_j ((o x F) x t)/|r_s|, t = r_s/|r_s|, so that Q . q' = F . x'
-  (Eq. 23 and its off-axis part). Force, moment and power are conserved to round-off, but for the torque about t of a section with
-  slopes, which no node coordinate takes up: CoupleAudit.twist.
+  The host owns its mesh, its state and its integrator. It describes once how BCE markers hang on its nodes, gives the nodes'
+  motion when asked, and receives the generalised nodal forces that hold over the step it then takes. A section is a point r =
+  sum_j S_j q_j of the structure, q_j the host's nodes; S are its shape functions there. Two kinds: without slopes: the section's
+  markers lie at r, as on a mesh of solid elements; with slopes: r_s = sum_j S'_j q_j is a tangent as well, and markers lie off r
+  on a rigid cross-section normal to it, as on the disks of a beam's axis (Sect. 2.4 of Pazouki, Serban, Negrut) or across the
+  thickness of a plate strip. Transfer of a force F on a marker at offset o: Q_j = S_j F + S'_j ((o x F) x t)/|r_s|, t =
+  r_s/|r_s|, so that Q . q' = F . x' (Eq. 23 and its off-axis part). Force, moment and power are conserved to round-off, but for
+  the torque about t of a section with slopes, which no node coordinate takes up: CoupleAudit.twist.
 */
 #ifndef COUPLEHOST_H
 #define COUPLEHOST_H
@@ -40,8 +39,8 @@ typedef struct {
   /* The host's own array for Q (nnodes x 3, N), which the coupling zeroes and adds to; needed when several surfaces share the
      host. NULL: the surface keeps one. */
   PetscErrorCode (*getloads)(void *ctx, PetscReal **Q);
-  /* Integrate to t (s) under Q (nnodes x 3, N, constant: the force at the middle of the step), in as many steps as the host likes.
-     Called for every surface of the host: do nothing when already there. */
+  /* Integrate to t (s) under Q (nnodes x 3, N, constant: the force at the middle of the step), in as many steps as the host
+     likes. Called for every surface of the host: do nothing when already there. */
   PetscErrorCode (*advance)(void *ctx, PetscReal t, const PetscReal *Q);
   /* Optional, as in CoupleSurfaceOps. */
   PetscErrorCode (*momentum)(void *ctx, PetscReal p[3], PetscReal weight[3], PetscReal support[3]);
