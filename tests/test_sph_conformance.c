@@ -635,6 +635,7 @@ static PetscErrorCode CheckStages(const Scene *c, const char *type)
     PetscCall(SceneMoveBody(sph, &still, t + 0.5 * dt[step]));
     PetscCall(SphStepEnd(sph));
     PetscCall(Take(sph, &end));
+    PetscCall(CheckForcesAndLimits(sph, &end, c->name));
     for (PetscInt i = 0; i < n.n; i++) { /* rates of the middle, state of the middle */
       for (int k = 0; k < 3; k++) {
         half.a[k][i] = end.a[k][i];
@@ -698,6 +699,50 @@ static PetscErrorCode CheckRoundTrip(const Scene *c, const char *type, SphPrecis
     PetscCall(SphDestroy(&sph[run]));
   }
   PetscCall(Drop(&back));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscInt Different(const Snapshot *a, const Snapshot *b)
+{
+  PetscInt d = 0;
+  for (PetscInt i = 0; i < a->n; i++) {
+    for (int k = 0; k < 3; k++) d += a->x[k][i] != b->x[k][i] || a->v[k][i] != b->v[k][i] || a->a[k][i] != b->a[k][i];
+    d += a->s[i] != b->s[i] || a->group[i] != b->group[i];
+  }
+  return d;
+}
+
+/* A run goes on from a saved state with the same bits: in the same object, and in a new one. */
+static PetscErrorCode CheckState(const Scene *c, const char *type)
+{
+  Sph sph, other;
+  Snapshot t[3];
+  size_t bytes;
+  void *state;
+
+  PetscFunctionBegin;
+  PetscCall(SceneCreate(c, type, SPH_PRECISION_SINGLE, &sph));
+  PetscCall(SphSetUp(sph));
+  for (int step = 0; step < 6; step++) PetscCall(SceneStep(sph, c, 2e-4));
+  PetscCall(SphGetStateSize(sph, &bytes));
+  PetscCall(PetscMalloc(bytes, &state));
+  PetscCall(SphSaveState(sph, bytes, state));
+  for (int step = 0; step < 7; step++) PetscCall(SceneStep(sph, c, 2e-4));
+  PetscCall(Take(sph, &t[0]));
+  PetscCall(SphRestoreState(sph, bytes, state));
+  for (int step = 0; step < 7; step++) PetscCall(SceneStep(sph, c, 2e-4));
+  PetscCall(Take(sph, &t[1]));
+  PetscCall(SceneCreate(c, type, SPH_PRECISION_SINGLE, &other));
+  PetscCall(SphSetUp(other));
+  PetscCall(SphRestoreState(other, bytes, state));
+  for (int step = 0; step < 7; step++) PetscCall(SceneStep(other, c, 2e-4));
+  PetscCall(Take(other, &t[2]));
+  TEST(Different(&t[0], &t[1]) == 0, "%s: %d values differ after going back", c->name, (int)Different(&t[0], &t[1]));
+  TEST(Different(&t[0], &t[2]) == 0, "%s: %d values differ in a new object", c->name, (int)Different(&t[0], &t[2]));
+  for (int k = 0; k < 3; k++) PetscCall(Drop(&t[k]));
+  PetscCall(PetscFree(state));
+  PetscCall(SphDestroy(&sph));
+  PetscCall(SphDestroy(&other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -800,7 +845,10 @@ static PetscErrorCode Run(const char *type)
       PetscCall(CheckSums(sph, &scenes[k]));
       PetscCall(SphDestroy(&sph));
       PetscCall(CheckRoundTrip(&scenes[k], type, (SphPrecision)precision));
-      if (precision == SPH_PRECISION_DOUBLE) PetscCall(CheckStages(&scenes[k], type));
+      if (precision == SPH_PRECISION_DOUBLE)
+        PetscCall(CheckStages(&scenes[k], type));
+      else
+        PetscCall(CheckState(&scenes[k], type));
     }
   PetscCall(CheckTrouble(&scenes[0], type));
   PetscCall(CheckTrouble(&scenes[6], type));
