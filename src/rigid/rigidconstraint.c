@@ -34,7 +34,7 @@ struct _p_RigidSystem {
   PetscInt *start, *entry; /* rows of body i: entry[start[i] .. start[i + 1]), 2 row + end */
   PetscReal *wrench;       /* bodies x 6 */
   RigidBody *saved;        /* bodies */
-  PetscReal *value;        /* matrix values of one row */
+  PetscScalar *value;      /* matrix values of one row */
   PetscInt *column;
   Mat A;
   KSP ksp;
@@ -207,11 +207,11 @@ static PetscErrorCode SystemAssemble(Rigid rigid, const RigidRow *row, PetscReal
       for (PetscInt p = i == RIGID_GROUND ? 0 : s->start[i]; i != RIGID_GROUND && p < s->start[i + 1]; p++) {
         const PetscReal *W = s->W + 6 * s->entry[p];
         s->column[n] = s->entry[p] / 2;
-        s->value[n] = 0.;
+        PetscReal dot = 0.;
         if (s->active[r] && s->active[s->column[n]])
-          for (int k = 0; k < 6; k++) s->value[n] += J[k] * W[k];
-        if (s->column[n] == r) diag += s->value[n];
-        n++;
+          for (int k = 0; k < 6; k++) dot += J[k] * W[k];
+        if (s->column[n] == r) diag += dot;
+        s->value[n++] = dot;
       }
     }
     s->column[n] = r;
