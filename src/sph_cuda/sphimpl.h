@@ -9,6 +9,7 @@
 
 #include "sph.h"
 #include "sphcell.h"
+#include <string.h>
 
 /* Steps between the Euler steps of the Verlet integrator, sphstep.h. */
 #define SPH_VERLET_EVERY 40
@@ -58,12 +59,26 @@ typedef struct {
 } SphRates;
 
 /* A state on its way into a buffer or out of it; counting only when there is none (sphstate.c). */
+typedef enum { SPH_BUFFER_COUNT, SPH_BUFFER_SAVE, SPH_BUFFER_LOAD } SphBufferWay;
 typedef struct {
   char *p;
   size_t size, at; /* bytes */
-  enum { SPH_BUFFER_COUNT, SPH_BUFFER_SAVE, SPH_BUFFER_LOAD } way;
+  SphBufferWay way;
 } SphBuffer;
-extern PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t bytes);
+static inline PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t bytes)
+{
+  PetscFunctionBegin;
+  if (b->way != SPH_BUFFER_COUNT) {
+    PetscCheck(b->at + bytes <= b->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "the buffer of a fluid state has %zu bytes; it needs more",
+               b->size);
+    if (b->way == SPH_BUFFER_SAVE)
+      memcpy(b->p + b->at, data, bytes);
+    else
+      memcpy(data, b->p + b->at, bytes);
+  }
+  b->at += bytes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 typedef struct _SphOps {
   PetscErrorCode (*setup)(Sph);

@@ -6,22 +6,6 @@
   a restore, from the same arrays.
 */
 #include "sphimpl.h"
-#include <string.h>
-
-PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t bytes)
-{
-  PetscFunctionBegin;
-  if (b->way != SPH_BUFFER_COUNT) {
-    PetscCheck(b->at + bytes <= b->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "the buffer of a fluid state has %zu bytes; it needs more",
-               b->size);
-    if (b->way == SPH_BUFFER_SAVE)
-      memcpy(b->p + b->at, data, bytes);
-    else
-      memcpy(data, b->p + b->at, bytes);
-  }
-  b->at += bytes;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 #define Move(b, x) PetscCall(SphBufferMove(b, &(x), sizeof(x)))
 #define MoveArray(b, x, n) PetscCall(SphBufferMove(b, x, (size_t)(n) * sizeof(*(x))))
