@@ -33,7 +33,8 @@ typedef struct {
 
 typedef struct {
   PetscInt n;
-  PetscReal wall, cpu, bytes, resident, setup; /* evaluations per second, per processor second; per marker, as counted and as held; s */
+  PetscReal wall, cpu, bytes, resident,
+      setup; /* evaluations per second, per processor second; per marker, as counted and as held; s */
 } Result;
 
 /* DualSPHysics 5.4, two threads: marker-evaluations/s in millions; 0 where there is no figure. */

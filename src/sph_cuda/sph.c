@@ -64,36 +64,12 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeArrays(Sph sph)
-{
-  PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) {
-    PetscCall(PetscFree(sph->st.x[k]));
-    PetscCall(PetscFree(sph->st.v[k]));
-    PetscCall(PetscFree(sph->stn.x[k]));
-    PetscCall(PetscFree(sph->stn.v[k]));
-    PetscCall(PetscFree(sph->rate.a[k]));
-    PetscCall(PetscFree(sph->rate.dv[k]));
-    PetscCall(PetscFree(sph->ab[k]));
-  }
-  PetscCall(PetscFree(sph->st.s));
-  PetscCall(PetscFree(sph->stn.s));
-  PetscCall(PetscFree(sph->rate.ds));
-  PetscCall(PetscFree(sph->m));
-  PetscCall(PetscFree(sph->wallratio));
-  PetscCall(PetscFree(sph->group));
-  PetscCall(PetscFree(sph->id));
-  PetscCall(PetscFree(sph->slot));
-  PetscCall(PetscFree(sph->groupstart));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SphDestroy(Sph *sph)
 {
   PetscFunctionBegin;
   if (!*sph) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*sph)->ops) PetscCall((*(*sph)->ops->destroy)(*sph));
-  PetscCall(FreeArrays(*sph));
+  PetscCall(SphFreeArrays(*sph));
   PetscCall(PetscFree(*sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,6 +159,7 @@ PetscErrorCode SphSetUp(Sph sph)
       sph->wallratio[i] = SphWallRatio(&sph->par, sph->wallratio[i]);
     }
   }
+  PetscCall(SphAllocateArrays(sph, sph->ops == &SphOps_CPU ? PETSC_TRUE : PETSC_FALSE));
   PetscCall((*sph->ops->setup)(sph));
   sph->setup = PETSC_TRUE;
   PetscCall((*sph->ops->build)(sph));
@@ -212,14 +189,15 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
 /*@
   SphComputeTimeStep - Stable step from the acoustic, force and viscous limits, or the fixed one.
 
-  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21. The artificial
-  viscosity counts as nu = alpha c_s h/(2 (dim + 2)): Monaghan, Rep. Prog. Phys. 68 (2005), Sect. 7.
-  Errors: a fixed step above the limit at the first step; later it is a warning, once.
+  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21.
+The artificial viscosity counts as nu = alpha c_s h/(2 (dim + 2)): Monaghan, Rep. Prog. Phys. 68 (2005), Sect. 7. Errors: a fixed
+step above the limit at the first step; later it is a warning, once.
 @*/
 PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
 {
   const SphParams *p = &sph->par;
-  const PetscReal nu = p->viscosity == SPH_VISCOSITY_ARTIFICIAL ? p->alpha * p->cs * p->h / (2.0 * (PetscReal)(p->dim + 2)) : p->mu / p->rho0;
+  const PetscReal nu =
+      p->viscosity == SPH_VISCOSITY_ARTIFICIAL ? p->alpha * p->cs * p->h / (2.0 * (PetscReal)(p->dim + 2)) : p->mu / p->rho0;
   PetscReal vmax, amax, limit;
   const char *which = "acoustic";
 

@@ -118,6 +118,8 @@ struct _p_Sph {
   double   *ab[3];              /* boundary acceleration, m/s^2 */
   int      *group;              /* -1 fluid, -2 left, else group */
   int      *id, *slot;
+  double   *zero;               /* array of zeros that stands for those of the above that no term reads, or NULL */
+  PetscReal backendbytes;       /* memory of the backend on the host, bytes */
 
   PetscReal t, dt;              /* time and current step, s */
   PetscInt  step;
@@ -140,8 +142,18 @@ extern PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, S
 
 /* sphcell.c: grid for the markers as they are, and a stable sort of all arrays into cell order. */
 extern PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *grid);
-extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap);
+extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap, void *scratch); /* scratch: 12 n bytes, for doubles */
 extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *cellstart);
+
+/* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
+static inline int SphTwoVelocities(const SphParams *p)
+{
+  return p->zeta > 0.0 || p->wall == SPH_WALL_ADAMI;
+}
+
+/* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those that no term reads. */
+extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share);
+extern PetscErrorCode SphFreeArrays(Sph sph);
 
 /* sphwall.c: factor r in v_ext = v_b + r (v_b - <v>) for a marker `depth` below a flat surface. */
 extern PetscReal SphWallRatio(const SphParams *par, PetscReal depth);
