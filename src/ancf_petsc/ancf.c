@@ -276,24 +276,6 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Q^g = integral of (rho_s A - rho A_outer) S^T g (Eq. 24 less buoyancy). */
-PetscErrorCode AncfSetUpWeight(Ancf ancf)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(ancf->weight, 6 * ancf->nnodes));
-  for (PetscInt b = 0; b < ancf->nbeams; b++) {
-    const AncfBeam *beam = &ancf->beams[b];
-    PetscReal w[4], q = beam->rhoA - ancf->fluiddensity * beam->area;
-
-    AncfElementLoad(beam->l, w);
-    for (PetscInt k = 0; k < beam->spec.elements; k++)
-      for (PetscInt i = 0; i < 4; i++)
-        for (PetscInt c = 0; c < 3; c++) ancf->weight[6 * (beam->node + k) + 3 * i + c] += w[i] * q * ancf->gravity[c];
-  }
-  ancf->avalid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static void AncfSetUpNodes(Ancf ancf)
 {
   static const unsigned char bits[3] = {0, ANCF_FIX_POSITION, ANCF_FIX_POSITION | ANCF_FIX_GRADIENT};
@@ -350,7 +332,8 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   if (ancf->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(ancf->nbeams > 0, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetUp: no beams, call AncfAddBeam() first");
   n = 6 * ancf->nnodes;
-  PetscCall(PetscCalloc6(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->rest));
+  PetscCall(
+      PetscCalloc7(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->steady, n, &ancf->rest));
   PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * ancf->nnodes, &ancf->mass));
   PetscCall(AncfRuleSetUp(&ancf->rule, ancf->strain, ancf->naxial, ancf->nbending));
   AncfSetUpNodes(ancf);
@@ -414,9 +397,11 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   a = *ancf;
   PetscCall(AncfGroupDestroy(a));
   PetscCall(AncfTSDestroy(a));
-  PetscCall(PetscFree6(a->e, a->v, a->a, a->load, a->weight, a->rest));
+  PetscCall(PetscFree7(a->e, a->v, a->a, a->load, a->weight, a->steady, a->rest));
   PetscCall(PetscFree2(a->fixed, a->mass));
   PetscCall(PetscFree(a->loadend));
+  PetscCall(PetscFree(a->permanent));
+  PetscCall(PetscFree(a->moment));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));
   PetscCall(PetscFree(a->beams));

@@ -28,6 +28,15 @@ void AncfShapeX(PetscReal xi, PetscReal l, PetscReal Sx[4])
   Sx[3] = xi * (3 * xi - 2);
 }
 
+/* d2/dx2 of Eq. 19 */
+void AncfShapeXX(PetscReal xi, PetscReal l, PetscReal Sxx[4])
+{
+  Sxx[0] = (12 * xi - 6) / (l * l);
+  Sxx[1] = (6 * xi - 4) / l;
+  Sxx[2] = -Sxx[0];
+  Sxx[3] = (6 * xi - 2) / l;
+}
+
 static PetscErrorCode AncfGaussSetUp(AncfGauss *g, PetscInt n)
 {
   PetscFunctionBegin;

@@ -37,6 +37,7 @@ static PetscErrorCode AncfGroupCreate(Ancf ancf, PetscInt first, PetscInt last, 
   g->a += 6 * node;
   g->load += 6 * node;
   g->weight += 6 * node;
+  g->steady += 6 * node;
   g->rest += 6 * node;
   g->fixed += node;
   g->mass += 8 * node;

@@ -47,6 +47,8 @@ struct _p_Ancf {
   PetscBool avalid;
   PetscReal loadscale;            /* of Q^a and Q^g; 1 but for the load steps of AncfSolveStatic() */
   PetscReal *load, *weight;       /* Q^a, Q^g */
+  PetscReal *permanent, *moment;  /* point and line loads, nodes x 6; moments, nodes x 3; NULL until used */
+  PetscReal *steady;              /* weight + permanent */
   PetscReal *loadend;             /* Q^a at loadtime[1], NULL until asked for */
   PetscBool linear;               /* Q^a goes from load to loadend between the two times, s */
   PetscReal loadtime[2], loadnow; /* loadnow: where the residual is evaluated, 0..1 */
@@ -88,8 +90,11 @@ extern PetscErrorCode AncfStateLoad(Ancf ancf, PetscReal t, const PetscReal *x);
 /* Loads at time t of the step. */
 extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
 
-/* ancf.c */
+/* ancfloads.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
+extern void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscReal Q[3], PetscReal dQ[9]);
+
+/* ancf.c */
 extern PetscErrorCode AncfSetUpBatches(Ancf ancf);
 extern PetscErrorCode AncfPrefixTS(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);

@@ -121,7 +121,7 @@ PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, 
   PetscCall(AncfMassMult(ancf, ancf->v, f));
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     T += 0.5 * f[i] * ancf->v[i];
-    P -= ancf->weight[i] * ancf->e[i];
+    P -= ancf->steady[i] * ancf->e[i];
   }
   PetscCall(PetscFree(f));
   if (elastic) PetscCall(AncfElasticEnergy(ancf, &W));

@@ -79,6 +79,28 @@ static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tangent of the moments, which are not conservative and make it unsymmetric unless all bending is in one plane. */
+static PetscErrorCode AncfAssembleMoments(Ancf ancf, const PetscReal *e, PetscInt stride, Mat P)
+{
+  PetscReal blk[144];
+  PetscInt bs;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetBlockSize(P, &bs));
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
+    const PetscReal *M = ancf->moment + 3 * j;
+    PetscReal Q[3], dQ[9];
+
+    if (ancf->fixed[j] & ANCF_FIX_GRADIENT || (M[0] == 0 && M[1] == 0 && M[2] == 0)) continue;
+    AncfMomentForce(M, e + j * stride + 3, Q, dQ);
+    PetscCall(PetscArrayzero(blk, 144));
+    for (int r = 0; r < 3; r++)
+      for (int c = 0; c < 3; c++) blk[bs * (bs - 3 + r) + 3 + c] = -ancf->loadscale * dQ[3 * r + c];
+    PetscCall(MatSetValuesBlocked(P, 1, &j, 1, &j, blk, ADD_VALUES));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
 static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
 {
@@ -120,6 +142,7 @@ PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, Pets
   } else {
     PetscCall(MatZeroEntries(P));
     PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
+    PetscCall(AncfAssembleMoments(ancf, e, stride, P));
     PetscCall(AncfAssembleNodes(ancf, diag, P));
   }
   PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
@@ -227,6 +250,23 @@ static void ShellFix(const AncfShell *s, const PetscInt chain[ANCF_LANES], Petsc
     }
 }
 
+/* The symmetric part of the tangent of the moments: Newton's method corrects the rest. */
+static void ShellMoments(const AncfShell *s, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D)
+{
+  for (int i = 0; i < ANCF_LANES; i++)
+    for (PetscInt k = 0; k < nrows; k++) {
+      const PetscInt j = chain[i] < 0 || k >= s->length[chain[i]] ? -1 : s->first[chain[i]] + k;
+      const PetscReal *M = j < 0 ? NULL : s->ancf->moment + 3 * j;
+      PetscReal Q[3], dQ[9];
+
+      if (!M || (M[0] == 0 && M[1] == 0 && M[2] == 0)) continue;
+      AncfMomentForce(M, s->e + 6 * j + 3, Q, dQ);
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+          D[36 * k + 6 * (3 + r) + 3 + c][i] -= 0.5 * s->ancf->loadscale * (dQ[3 * r + c] + dQ[3 * c + r]);
+    }
+}
+
 static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D, AncfLanes *U)
 {
   const AncfShell *s = (const AncfShell *)ctx;
@@ -260,6 +300,7 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
     ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];
   }
+  if (s->ancf->moment) ShellMoments(s, chain, nrows, D);
   ShellFix(s, chain, nrows, D, U);
 }
 
@@ -289,6 +330,12 @@ static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
       for (int r = 0; r < 12; r++)
         for (int c = 0; c < 12; c++) y[6 * b->node[i] + r] += k[12 * r + c] * x[6 * b->node[i] + c];
     }
+  }
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment && !s->identity; j++) {
+    PetscReal Q[3], dQ[9];
+
+    AncfMomentForce(ancf->moment + 3 * j, s->e + 6 * j + 3, Q, dQ);
+    for (int r = 0; r < 9; r++) y[6 * j + 3 + r / 3] -= ancf->loadscale * dQ[r] * x[6 * j + 3 + r % 3];
   }
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (int c = 0; c < 6; c++)

@@ -51,7 +51,7 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
-    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->weight[6 * j + c] + ancf->load[6 * j + c]);
+    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->steady[6 * j + c] + ancf->load[6 * j + c]);
   if (ancf->loadnow != 0)
     for (PetscInt j = 0; j < ancf->nnodes; j++)
       for (PetscInt c = 0; c < 6; c++)
@@ -73,6 +73,14 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
       for (int c = 0; c < 6; c++) fj[c] += Q[c][i];
       for (int c = 0; c < 6; c++) fj[fstride + c] += Q[6 + c][i];
     }
+  }
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
+    const PetscReal *M = ancf->moment + 3 * j;
+    PetscReal Q[3];
+
+    if (M[0] == 0 && M[1] == 0 && M[2] == 0) continue;
+    AncfMomentForce(M, ancf->fixed[j] & ANCF_FIX_GRADIENT ? ancf->rest + 6 * j + 3 : e + j * stride + 3, Q, NULL);
+    for (int c = 0; c < 3; c++) f[j * fstride + 3 + c] -= scale * Q[c];
   }
   PetscCall(PetscLogEventEnd(ANCF_Force, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
