@@ -1,11 +1,11 @@
 /*
   couple.c - the coupled time loop.
 
-  One step from t to t + dt, second order for smooth loads: rates at t and fluid at the half step; markers of every surface
-  extrapolated to the half step with the structure's velocity and acceleration; rates, fluid state at t + dt and marker
-  forces at the half step (a midpoint rule for both sides); structures advance to t + dt under these forces with substeps of
-  their own; markers take the new state. Action and reaction are equal. Staggered by default; coupleiterate.c iterates on the
-  forces.
+  One step from t to t + dt: rates at t and fluid at the half step; markers of every surface extrapolated to the half step with
+  the structure's velocity and acceleration; rates, fluid state at t + dt and marker forces at the half step (a midpoint rule
+  for both sides); structures advance to t + dt under these forces with substeps of their own; markers take the new state.
+  Action and reaction are equal. This staggered step is between first and second order (about 1.2 measured), since walls feel the
+  structure's acceleration of the last step; coupleiterate.c iterates on the forces and is of second order (1.96 measured).
 */
 #include "coupleimpl.h"
 
