@@ -10,3 +10,6 @@ if(FROND_HAVE_CUDA)
   find_package(CUDAToolkit REQUIRED)
   target_link_libraries(bench_cuda PRIVATE CUDA::cudart_static stdc++)
 endif()
+
+add_executable(bench_scaling bench_scaling.c)
+target_link_libraries(bench_scaling PRIVATE frond frond_flags)
