@@ -29,17 +29,34 @@ static PetscErrorCode build_sph(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* In 2D a beam is a plate of thickness d, for one metre of depth: A = d, I = d^3/12 unless stiffness and mass are given. */
+static PetscErrorCode plate_section(AncfBeamSpec *spec)
+{
+  const PetscReal d = spec->diameter;
+
+  PetscFunctionBegin;
+  if (!(d > 0 && spec->young > 0 && spec->density > 0))
+    PetscFunctionReturn(PETSC_SUCCESS); /* AncfAddBeam() refuses it or does not need it */
+  if (spec->EA == PETSC_DECIDE) spec->EA = spec->young * d;
+  if (spec->EI == PETSC_DECIDE) spec->EI = spec->young * d * d * d / 12;
+  if (spec->rhoA == PETSC_DECIDE) spec->rhoA = spec->density * d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode build_beams(App *app, PetscReal rho)
 {
   AppScene *s = &app->scene;
 
   PetscFunctionBegin;
   if (!s->nbeams) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(app->dim == 3 || rho == 0, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "buoyancy archimedes is not there for beams in a 2D scene: use resolved");
   PetscCall(AncfCreate(PETSC_COMM_SELF, &app->ancf));
   PetscCall(AncfSetGravity(app->ancf, s->gravity));
   PetscCall(AncfSetFluidDensity(app->ancf, rho));
   for (PetscInt b = 0; b < s->nbeams; b++) {
     AppDoing(app, "beam '%s'", s->beams[b].name);
+    if (app->dim == 2) PetscCall(plate_section(&s->beams[b].spec));
     PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
     AppDoing(app, "%s", "");
   }
