@@ -296,6 +296,8 @@ static void AncfSetUpNodes(Ancf ancf)
     ancf->fixed[ancf->beams[b].node] = bits[s->end0];
     ancf->fixed[ancf->beams[b].node + s->elements] = bits[s->end1];
   }
+  for (PetscInt k = 0; k < ancf->nsupports; k++)
+    ancf->fixed[ancf->beams[ancf->supports[k].beam].node + ancf->supports[k].node] |= bits[ancf->supports[k].how];
 }
 
 PetscErrorCode AncfSetUpBatches(Ancf ancf)
@@ -402,6 +404,8 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree(a->loadend));
   PetscCall(PetscFree(a->permanent));
   PetscCall(PetscFree(a->moment));
+  PetscCall(PetscFree2(a->motion, a->resta));
+  PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));
   PetscCall(PetscFree(a->beams));

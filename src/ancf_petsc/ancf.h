@@ -38,6 +38,8 @@ FROND_EXTERN PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf);
 FROND_EXTERN PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[]);
 FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
 FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
+/* Supports any node of a beam, before AncfSetUp(): ANCF_END_PIN or ANCF_END_CLAMP. */
+FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
 FROND_EXTERN PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3]);
 FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
 FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
@@ -75,6 +77,12 @@ FROND_EXTERN PetscErrorCode AncfClearLoads(Ancf ancf);
 /* Centreline (m), axial force (N), curvature vector (1/m) and bending moment (N m) at the fraction s of a beam's length. */
 FROND_EXTERN PetscErrorCode AncfGetSection(Ancf ancf, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal *N,
                                            PetscReal kappa[3], PetscReal M[3]);
+
+/* Motion of a supported node from now on, e + v tau + a tau^2/2, and the generalised force that the support exerts; ancfmotion.c.
+ */
+FROND_EXTERN PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const PetscReal e[6], const PetscReal v[6],
+                                              const PetscReal a[6]);
+FROND_EXTERN PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, PetscReal f[6]);
 
 /* Iterated coupling: AncfRestoreState() goes back to the time of AncfSaveState() as often as wanted, with the history of the
    integrator for one-step methods and alpha2 (a multistep method restarts). Loads are left alone. */

@@ -120,6 +120,7 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   if (reason < 0) PetscCall(AncfFail(ancf, t0, reason));
   PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));
   PetscCall(AncfTSPull(ancf));
+  PetscCall(AncfMoveState(ancf, t));
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
   if (ierr) PetscCall(AncfStateLoad(ancf, t0, ancf->backup));

@@ -12,7 +12,12 @@ typedef enum {
   ANCF_FORM_SYMPLECTIC /* edot = v, vdot = a(e), split for TSBASICSYMPLECTIC */
 } AncfForm;
 
-enum { ANCF_FIX_POSITION = 1, ANCF_FIX_GRADIENT = 2 };
+enum { ANCF_FIX_POSITION = 1, ANCF_FIX_GRADIENT = 2, ANCF_MOVING = 4 };
+
+typedef struct {
+  PetscInt beam, node;
+  AncfEnd how;
+} AncfSupport;
 
 typedef struct {
   AncfBeamSpec spec;
@@ -52,9 +57,12 @@ struct _p_Ancf {
   PetscReal *loadend;             /* Q^a at loadtime[1], NULL until asked for */
   PetscBool linear;               /* Q^a goes from load to loadend between the two times, s */
   PetscReal loadtime[2], loadnow; /* loadnow: where the residual is evaluated, 0..1 */
-  PetscReal *rest;                /* values of the eliminated coordinates */
-  unsigned char *fixed;           /* per node, ANCF_FIX_* */
-  PetscReal *mass;                /* banded Cholesky factor, 2 rows per node x 4 */
+  PetscReal *rest, *resta;        /* eliminated coordinates and their accelerations; resta is NULL while none moves */
+  PetscReal *motion, motiontime;  /* e, v, a of moving nodes at that time, nodes x 18; NULL while none moves */
+  AncfSupport *supports;
+  PetscInt nsupports, maxsupports;
+  unsigned char *fixed; /* per node, ANCF_FIX_* */
+  PetscReal *mass;      /* banded Cholesky factor, 2 rows per node x 4 */
 
   TS ts;
   Vec U, V;
@@ -90,6 +98,10 @@ extern PetscErrorCode AncfStateLoad(Ancf ancf, PetscReal t, const PetscReal *x);
 /* Loads at time t of the step. */
 extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
 
+/* ancfmotion.c: prescribed coordinates at time t; MoveState also in the state and the vectors of TS. */
+extern void AncfMove(Ancf ancf, PetscReal t);
+extern PetscErrorCode AncfMoveState(Ancf ancf, PetscReal t);
+
 /* ancfloads.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
 extern void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscReal Q[3], PetscReal dQ[9]);
@@ -106,10 +118,13 @@ extern PetscErrorCode AncfChooseForm(Ancf ancf);
 extern PetscErrorCode AncfTSSetUp(Ancf ancf);
 extern PetscErrorCode AncfTSPush(Ancf ancf);
 extern PetscErrorCode AncfTSPull(Ancf ancf);
+extern PetscErrorCode AncfTSCopy(Ancf ancf);  /* first-order forms: state -> vector, without a restart */
 extern PetscErrorCode AncfTSTouch(Ancf ancf); /* second-order form: U and V wrap e and v, say that these changed */
 /* f = M a + Q^e(e) - Q^g - Q^a; a may be NULL. Arrays are nodes x 6 with the given strides between nodes. */
-extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f,
-                                   PetscInt fstride);
+extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride,
+                                   PetscReal *f, PetscInt fstride);
+/* a = M^-1 (Q^g + Q^a - Q^e), prescribed values in eliminated rows. */
+extern PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride);
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 
@@ -118,7 +133,7 @@ extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P);
 extern PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P);
 extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J);
-/* Rows of eliminated coordinates: f = x, or 0 when x is NULL. */
+/* Rows of eliminated coordinates: f = x - prescribed acceleration; x NULL: f = that acceleration. */
 extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
 
 /* ancfgroup.c */

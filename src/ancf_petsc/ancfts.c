@@ -44,7 +44,8 @@ PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f, PetscInt fstride)
+PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                            PetscInt fstride)
 {
   const PetscReal scale = ancf->loadscale;
 
@@ -64,7 +65,7 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
     AncfGather(ancf, b, e, stride, ancf->rest, x);
     AncfElementForce(&ancf->rule, &s, x, Q, NULL);
     if (a) {
-      AncfGather(ancf, b, a, stride, NULL, x);
+      AncfGather(ancf, b, a, astride, ancf->resta, x);
       AncfElementInertia(AncfLoad(b->rhoA), s.l, x, Q);
     }
     for (PetscInt i = 0; i < b->n; i++) {
@@ -86,14 +87,17 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of eliminated coordinates: f = x; x NULL: f = 0. */
 void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
 {
   for (PetscInt j = 0; j < ancf->nnodes; j++) {
-    unsigned char fix = ancf->fixed[j];
+    const unsigned char fix = ancf->fixed[j];
 
-    for (int c = 0; c < 6; c++)
-      if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] : 0;
+    if (PetscLikely(!fix)) continue;
+    for (int c = 0; c < 6; c++) {
+      const PetscReal a = ancf->resta ? ancf->resta[6 * j + c] : 0;
+
+      if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] - a : a;
+    }
   }
 }
 
@@ -114,7 +118,7 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
   if (ancf->priming)
     PetscCall(AncfAlphaFunction(ancf, a, f));
   else {
-    PetscCall(AncfResidual(ancf, u, a, 6, f, 6));
+    PetscCall(AncfResidual(ancf, u, 6, a, 6, f, 6));
     AncfFixRows(ancf, a, 6, f, 6);
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -156,7 +160,7 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(Ydot, &yd));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfResidual(ancf, y, yd + 6, 12, f + 6, 12));
+  PetscCall(AncfResidual(ancf, y, 12, yd + 6, 12, f + 6, 12));
   AncfFixRows(ancf, yd + 6, 12, f + 6, 12);
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) f[c] = yd[c] - y[c + 6];
@@ -181,10 +185,10 @@ static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscRe
 }
 
 /* a = M^-1 (Q^g + Q^a - Q^e), coordinates and result with their own strides */
-static PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride)
+PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride)
 {
   PetscFunctionBegin;
-  PetscCall(AncfResidual(ancf, e, NULL, stride, a, astride));
+  PetscCall(AncfResidual(ancf, e, stride, ancf->resta, 6, a, astride));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
   AncfFixRows(ancf, NULL, 0, a, astride);
@@ -417,8 +421,6 @@ PetscErrorCode AncfTSTouch(Ancf ancf)
 /* State -> TS, whose history is discarded. */
 PetscErrorCode AncfTSPush(Ancf ancf)
 {
-  PetscScalar *y;
-
   PetscFunctionBegin;
   if (ancf->ngroups) {
     PetscCall(AncfGroupPush(ancf));
@@ -430,15 +432,23 @@ PetscErrorCode AncfTSPush(Ancf ancf)
   ancf->given = PETSC_FALSE;
   if (ancf->form == ANCF_FORM_SECOND)
     PetscCall(AncfTSTouch(ancf));
-  else {
-    PetscCall(VecGetArrayWrite(ancf->U, &y));
-    for (PetscInt j = 0; j < ancf->nnodes; j++)
-      for (PetscInt c = 0; c < 6; c++) {
-        y[12 * j + c] = ancf->e[6 * j + c];
-        y[12 * j + 6 + c] = ancf->v[6 * j + c];
-      }
-    PetscCall(VecRestoreArrayWrite(ancf->U, &y));
-  }
+  else
+    PetscCall(AncfTSCopy(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfTSCopy(Ancf ancf)
+{
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(ancf->U, &y));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) {
+      y[12 * j + c] = ancf->e[6 * j + c];
+      y[12 * j + 6 + c] = ancf->v[6 * j + c];
+    }
+  PetscCall(VecRestoreArrayWrite(ancf->U, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
