@@ -12,8 +12,10 @@ echo "| architecture | file | kernel | registers | stack (B) | spill stores (B) 
 echo "| --- | --- | --- | --- | --- | --- | --- |"
 for arch in "${@:-sm_75}"; do
   for file in sph_cuda.cu sph_cudabuild.cu sph_cudastep.cu sph_cudapairs_single.cu sph_cudapairs_double.cu; do
+    flags=
+    if [ "$file" = sph_cudapairs_single.cu ]; then flags="-prec-div=false -prec-sqrt=false"; fi # as src/sph_cuda/cuda.cmake
     # shellcheck disable=SC2086
-    "$nvcc" -std=c++17 -Wno-deprecated-gpu-targets -arch="$arch" -Xptxas -v -I. -I.. $include -c "$file" -o /dev/null 2>&1 | c++filt |
+    "$nvcc" -std=c++17 -Wno-deprecated-gpu-targets -arch="$arch" -Xptxas -v $flags -I. -I.. $include -c "$file" -o /dev/null 2>&1 | c++filt |
       awk -v arch="$arch" -v file="$file" '
         /Compiling entry function/ { name = $0; sub(/^[^\047]*\047/, "", name); sub(/\047.*/, "", name); sub(/^void /, "", name); sub(/\(.*/, "", name) }
         /bytes stack frame/ { stack = $1; stores = $5; loads = $9 }

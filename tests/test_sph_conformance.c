@@ -6,10 +6,11 @@
   and 3 cells.
 
   Bounds. u is the unit round-off of the pair arithmetic (2^-24 or 2^-53). A sum of N terms t_j, each the result of at most OPS =
-  32 roundings of magnitude |t_j|, has the error (N + OPS) u Sum |t_j| (Higham, Accuracy and Stability, Sect. 4.2), where |t_j| is
-  the sum of the magnitudes of what is added inside the term. Positions are rounded relative to a cell of edge <= e, so a
-  difference of two of them is wrong by at most d = 5 u e (own, neighbour, offset, two additions); its effect on a kernel is taken
-  from the kernel at q +- (sqrt(3) d/h + 8 u). A quotient of sums n/s carries (dn + |n/s| ds)/s. Nothing is fitted to results.
+  32 roundings of magnitude |t_j| (an operation to 2 ulp counts as four), has the error (N + OPS) u Sum |t_j| (Higham, Accuracy
+  and Stability, Sect. 4.2), where |t_j| is the sum of the magnitudes of what is added inside the term. Positions are rounded
+  relative to a cell of edge <= e, so a difference of two of them is wrong by at most d = 5 u e (own, neighbour, offset, two
+  additions); its effect on a kernel is taken from the kernel at q +- (sqrt(3) d/h + 8 u). A quotient of sums n/s carries (dn +
+  |n/s| ds)/s. Nothing is fitted to results.
 */
 #include "sph_conformance.h"
 #include "testing.h"

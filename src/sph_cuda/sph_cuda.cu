@@ -261,6 +261,15 @@ PetscErrorCode SphCudaFlushMotion(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Are the n values of x (zeros when NULL) those in h? */
+static PetscBool Same(const double *h, const PetscReal *x, PetscInt n)
+{
+  for (PetscInt i = 0; i < n; i++)
+    if (h[i] != (x ? x[i] : 0.0)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Markers that stay as they are, walls above all, are not sent again. */
 static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
@@ -268,6 +277,7 @@ static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, c
   double *hx = cuda->hmotion + 3 * b0, *hv = hx + 3 * cuda->nb, *ha = hv + 3 * cuda->nb;
 
   PetscFunctionBegin;
+  if (Same(hx, x, 3 * (b1 - b0)) && Same(hv, v, 3 * (b1 - b0)) && Same(ha, a, 3 * (b1 - b0))) PetscFunctionReturn(PETSC_SUCCESS);
   if (cuda->uploading) { /* the copy engine may still be reading hmotion */
     SphCallCUDA(cudaEventSynchronize(cuda->uploaded));
     cuda->uploading = PETSC_FALSE;
@@ -278,7 +288,6 @@ static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, c
     PetscCall(PetscArraycpy(ha, a, 3 * (b1 - b0)));
   else
     PetscCall(PetscArrayzero(ha, 3 * (b1 - b0)));
-  if (b0 == b1) PetscFunctionReturn(PETSC_SUCCESS);
   if (cuda->dirty0 == cuda->dirty1) {
     cuda->dirty0 = b0;
     cuda->dirty1 = b1;
@@ -332,7 +341,7 @@ static PetscErrorCode State_CUDA(Sph sph, SphBuffer *b)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
   const size_t n = (size_t)sph->n, nd = n * sizeof(double), nk = n * sizeof(unsigned);
-  const int load = b->way == SphBuffer::SPH_BUFFER_LOAD;
+  const int load = b->way == SPH_BUFFER_LOAD;
   PetscBool built = cuda->built;
   double *x[3];
   unsigned *key;
