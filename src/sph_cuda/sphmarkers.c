@@ -30,11 +30,12 @@ static PetscErrorCode GrowInt(int **a, PetscInt n, PetscInt cap)
 
 static PetscErrorCode Reserve(Sph sph, PetscInt more)
 {
-  const PetscInt cap = sph->n + more;
+  PetscInt cap = sph->n + more;
 
   PetscFunctionBegin;
   PetscCheck(cap < 2000000000, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " markers: must be fewer than 2e9", cap);
   if (cap <= sph->cap) PetscFunctionReturn(PETSC_SUCCESS);
+  if (sph->ngroups >= 8) cap = PetscMax(cap, sph->cap + sph->cap / 16); /* thousands of beams or bodies: not a copy for each */
   for (int k = 0; k < 3; k++) {
     PetscCall(GrowDouble(&sph->st.x[k], sph->n, cap));
     PetscCall(GrowDouble(&sph->st.v[k], sph->n, cap));
