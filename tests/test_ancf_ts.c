@@ -412,6 +412,29 @@ static PetscErrorCode TestMovingSupport(const char options[], PetscReal dt, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Damping C = alpha M slows a rigid translation as exp(-alpha t): second-order methods err by alpha^3 t dt^2/12 < 1e-6. */
+static PetscErrorCode TestDamping(const char type[])
+{
+  const PetscReal alpha = 3, dt = 1e-3;
+  char options[160];
+  PetscReal p[3], p0[3];
+  AncfBeamSpec s;
+  Ancf a;
+
+  PetscFunctionBegin;
+  snprintf(options, sizeof(options), "%s -ancf_damping 3", type);
+  PetscCall(SeedSpec(3, &s));
+  s.end0 = ANCF_END_FREE;
+  s.velocity[1] = 2;
+  PetscCall(BeamCreate(&s, 0, options, &a));
+  PetscCall(AncfGetMomentum(a, p0, NULL));
+  for (int i = 1; i <= 500; i++) PetscCall(AncfAdvance(a, i * dt));
+  PetscCall(AncfGetMomentum(a, p, NULL));
+  TEST_REL(p[1], p0[1] * PetscExpReal(-0.5 * alpha), 3e-6, options);
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A beam pinned in the middle as well: its deflection under a uniform load is that of a continuous beam over two spans. */
 static PetscErrorCode TestInnerSupport(void)
 {
@@ -564,6 +587,8 @@ static PetscErrorCode TestBadInput(void)
   TEST_ERROR(CreateBad("-ancf_fluid_density -1"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_fluid_density");
   TEST_ERROR(CreateBad("-ancf_quadrature_axial 0"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_quadrature_axial");
   TEST_ERROR(CreateBad("-ancf_quadrature_bending 9"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_quadrature_bending");
+  TEST_ERROR(CreateBad("-ancf_damping -1"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_damping");
+  TEST_ERROR(CreateBad("-ancf_damping 1 -ancf_ts_type basicsymplectic"), PETSC_ERR_ARG_INCOMP, "-ancf_damping");
   TEST_ERROR(CreateBad("-ancf_ts_type pseudo"), PETSC_ERR_ARG_WRONG, "-ancf_ts_type pseudo");
   TEST_ERROR(CreateBad("-ancf_ts_type arkimex -ancf_ts_arkimex_type 3"), PETSC_ERR_ARG_WRONG, "-ancf_ts_arkimex_type 3");
   PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
@@ -631,6 +656,8 @@ int main(int argc, char **argv)
   PetscCall(TestJacobian("-ancf_ts_type alpha2", PETSC_TRUE));
   PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_strain engineering", PETSC_TRUE));
   PetscCall(TestJacobian("-ancf_ts_type bdf", PETSC_FALSE));
+  PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_damping 7", PETSC_TRUE));
+  PetscCall(TestJacobian("-ancf_ts_type theta -ancf_damping 7", PETSC_FALSE));
   PetscCall(TestTypes());
   PetscCall(TestContinuation("-ancf_ts_type alpha2"));
   PetscCall(TestContinuation("-ancf_ts_type bdf"));
@@ -659,6 +686,9 @@ int main(int argc, char **argv)
       TEST(fine < coarse / 3 || fine < 1e-9, "%s: error %g after %g with twice the step", types[k], (double)fine, (double)coarse);
     }
   }
+  PetscCall(TestDamping("-ancf_ts_type alpha2"));
+  PetscCall(TestDamping("-ancf_ts_type theta"));
+  PetscCall(TestDamping("-ancf_ts_type rk -ancf_substeps 4"));
   PetscCall(TestInnerSupport());
   PetscCall(TestGroups());
   PetscCall(TestBadInput());

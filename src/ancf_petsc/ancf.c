@@ -226,6 +226,18 @@ PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Mass-proportional (Rayleigh) damping C = damping M, 1/s: a mode of frequency w rad/s has the damping ratio damping/(2 w).
+ * Default 0. */
+PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping)
+{
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_damping cannot change after AncfSetUp()");
+  PetscCheck(damping >= 0 && !PetscIsInfOrNanReal(damping), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_damping %g 1/s must be finite and not negative", (double)damping);
+  ancf->damping = damping;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   AncfSetGroupNodes - beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in
   cache (default 1000). A set of fewer than twice as many nodes is one group, and so is any set whose TS was asked for by
@@ -244,7 +256,7 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
 {
   PetscReal g[3];
   PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending, group = ancf->groupnodes;
-  PetscReal rho = ancf->fluiddensity;
+  PetscReal rho = ancf->fluiddensity, damping = ancf->damping;
   AncfStrain strain = ancf->strain;
   PetscBool flg, flg2;
 
@@ -267,6 +279,8 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   PetscCall(PetscOptionsInt("-ancf_quadrature_bending", "Gauss points per element for the bending energy, 2..8",
                             "AncfSetQuadrature", bending, &bending, &flg2));
   if (flg || flg2) PetscCall(AncfSetQuadrature(ancf, axial, bending));
+  PetscCall(PetscOptionsReal("-ancf_damping", "Mass-proportional damping, 1/s", "AncfSetDamping", damping, &damping, &flg));
+  if (flg) PetscCall(AncfSetDamping(ancf, damping));
   PetscCall(PetscOptionsInt("-ancf_group_nodes", "Nodes per group of beams with a TS of its own", "AncfSetGroupNodes", group,
                             &group, &flg));
   if (flg) PetscCall(AncfSetGroupNodes(ancf, group));
@@ -337,6 +351,13 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   PetscCall(
       PetscCalloc7(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->steady, n, &ancf->rest));
   PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * ancf->nnodes, &ancf->mass));
+  for (PetscInt k = 0; k < ancf->nsupports; k++) {
+    const PetscReal *v = ancf->beams[ancf->supports[k].beam].spec.velocity;
+
+    PetscCheck(v[0] == 0 && v[1] == 0 && v[2] == 0, ancf->comm, PETSC_ERR_ARG_INCOMP,
+               "Beam %" PetscInt_FMT ": velocity = (%g, %g, %g) m/s must be zero because its node %" PetscInt_FMT " is fixed",
+               ancf->supports[k].beam, (double)v[0], (double)v[1], (double)v[2], ancf->supports[k].node);
+  }
   PetscCall(AncfRuleSetUp(&ancf->rule, ancf->strain, ancf->naxial, ancf->nbending));
   AncfSetUpNodes(ancf);
   PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
@@ -368,7 +389,8 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "gravity (%g, %g, %g) m/s^2, fluid density for buoyancy %g kg/m^3\n",
                                    (double)ancf->gravity[0], (double)ancf->gravity[1], (double)ancf->gravity[2],
                                    (double)ancf->fluiddensity));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT "\n", ancf->substeps));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT ", mass-proportional damping %g 1/s\n", ancf->substeps,
+                                   (double)ancf->damping));
   for (PetscInt b = 0; b < PetscMin(ancf->nbeams, 10); b++) {
     const AncfBeam *m = &ancf->beams[b];
 
@@ -404,7 +426,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree(a->loadend));
   PetscCall(PetscFree(a->permanent));
   PetscCall(PetscFree(a->moment));
-  PetscCall(PetscFree2(a->motion, a->resta));
+  PetscCall(PetscFree3(a->motion, a->resta, a->restm));
   PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));

@@ -45,6 +45,7 @@ FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
 FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
 FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
+FROND_EXTERN PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping);
 FROND_EXTERN PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes);
 FROND_EXTERN PetscErrorCode AncfSetFromOptions(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfSetUp(Ancf ancf);

@@ -40,7 +40,8 @@ struct _p_Ancf {
   AncfStrain strain;
   PetscInt naxial, nbending, substeps;
   AncfRule rule;
-  PetscReal gravity[3], fluiddensity;
+  PetscReal gravity[3], fluiddensity, damping;
+  PetscReal *damped; /* a + damping v, nodes x 6 */
   PetscBool setup;
   AncfForm form;
   PetscBool fromoptions, exposed; /* AncfSetFromOptions() and AncfGetTS() were called */
@@ -58,6 +59,7 @@ struct _p_Ancf {
   PetscBool linear;               /* Q^a goes from load to loadend between the two times, s */
   PetscReal loadtime[2], loadnow; /* loadnow: where the residual is evaluated, 0..1 */
   PetscReal *rest, *resta;        /* eliminated coordinates and their accelerations; resta is NULL while none moves */
+  PetscReal *restm;               /* resta + damping times their velocities */
   PetscReal *motion, motiontime;  /* e, v, a of moving nodes at that time, nodes x 18; NULL while none moves */
   AncfSupport *supports;
   PetscInt nsupports, maxsupports;
@@ -123,8 +125,10 @@ extern PetscErrorCode AncfTSTouch(Ancf ancf); /* second-order form: U and V wrap
 /* f = M a + Q^e(e) - Q^g - Q^a; a may be NULL. Arrays are nodes x 6 with the given strides between nodes. */
 extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride,
                                    PetscReal *f, PetscInt fstride);
-/* a = M^-1 (Q^g + Q^a - Q^e), prescribed values in eliminated rows. */
-extern PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride);
+/* a = M^-1 (Q^g + Q^a - Q^e - C v), v may be NULL, prescribed values in eliminated rows. */
+extern PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
+                                               PetscInt astride);
+extern PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f);
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 

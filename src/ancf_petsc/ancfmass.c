@@ -101,7 +101,7 @@ PetscErrorCode AncfComputeAcceleration(Ancf ancf)
   PetscFunctionBegin;
   if (ancf->avalid) PetscFunctionReturn(PETSC_SUCCESS);
   AncfMove(ancf, ancf->t);
-  PetscCall(AncfExplicitAcceleration(ancf, ancf->e, 6, ancf->a, 6));
+  PetscCall(AncfExplicitAcceleration(ancf, ancf->e, ancf->v, 6, ancf->a, 6));
   ancf->avalid = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,9 +158,8 @@ PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3])
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetReaction: call AncfSetUp() first");
-  PetscCall(AncfComputeAcceleration(ancf));
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
-  PetscCall(AncfResidual(ancf, ancf->e, 6, ancf->a, 6, r, 6));
+  PetscCall(AncfSupportForces(ancf, r));
   f[0] = f[1] = f[2] = 0;
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     if (ancf->fixed[j] & ANCF_FIX_POSITION)

@@ -51,6 +51,7 @@ static void MoveNodes(Ancf ancf, PetscReal t, PetscBool state)
       if (!(ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
       ancf->rest[6 * j + c] = m[c] + tau * (m[6 + c] + 0.5 * tau * m[12 + c]);
       ancf->resta[6 * j + c] = m[12 + c];
+      ancf->restm[6 * j + c] = m[12 + c] + ancf->damping * (m[6 + c] + tau * m[12 + c]);
       if (!state) continue;
       ancf->e[6 * j + c] = ancf->rest[6 * j + c];
       ancf->v[6 * j + c] = m[6 + c] + tau * m[12 + c];
@@ -93,12 +94,13 @@ PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const 
                "AncfSetNodeMotion: beam %" PetscInt_FMT ", node %" PetscInt_FMT ": coordinate %d (%g, %g, %g) must be finite",
                beam, node, c, (double)e[c], (double)v[c], (double)a[c]);
   if (!ancf->motion) {
-    PetscCall(PetscCalloc2(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta));
+    PetscCall(PetscCalloc3(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm));
     for (PetscInt k = 0; k < ancf->ngroups; k++) {
       const PetscInt first = ancf->beams[ancf->groups[k]->firstbeam].node;
 
       ancf->groups[k]->motion = ancf->motion + 18 * first;
       ancf->groups[k]->resta = ancf->resta + 6 * first;
+      ancf->groups[k]->restm = ancf->restm + 6 * first;
     }
   }
   if (ancf->motiontime != ancf->t) { /* the others go on from where they are */
@@ -134,9 +136,8 @@ PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, Pets
 
   PetscFunctionBegin;
   PetscCall(MotionNode(ancf, "AncfGetNodeReaction", beam, node, &j));
-  PetscCall(AncfComputeAcceleration(ancf));
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
-  PetscCall(AncfResidual(ancf, ancf->e, 6, ancf->a, 6, r, 6));
+  PetscCall(AncfSupportForces(ancf, r));
   for (int c = 0; c < 6; c++) f[c] = ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT) ? r[6 * j + c] : 0;
   PetscCall(PetscFree(r));
   PetscFunctionReturn(PETSC_SUCCESS);

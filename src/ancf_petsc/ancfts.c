@@ -65,7 +65,7 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, cons
     AncfGather(ancf, b, e, stride, ancf->rest, x);
     AncfElementForce(&ancf->rule, &s, x, Q, NULL);
     if (a) {
-      AncfGather(ancf, b, a, astride, ancf->resta, x);
+      AncfGather(ancf, b, a, astride, ancf->restm, x);
       AncfElementInertia(AncfLoad(b->rhoA), s.l, x, Q);
     }
     for (PetscInt i = 0; i < b->n; i++) {
@@ -101,28 +101,56 @@ void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, P
   }
 }
 
-/* F = M a + Q^e - Q^g - Q^a */
+/* Mass-proportional damping, C = damping M, enters as the acceleration a + damping v; returns a itself without damping. */
+static const PetscReal *AncfDamped(Ancf ancf, const PetscReal *v, const PetscReal *a, PetscInt stride, PetscInt *outstride)
+{
+  *outstride = stride;
+  if (ancf->damping == 0) return a;
+  *outstride = 6;
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) ancf->damped[6 * j + c] = a[j * stride + c] + ancf->damping * v[j * stride + c];
+  return ancf->damped;
+}
+
+/* The full equations of motion at the current state, constraints ignored: what the supports must supply. */
+PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f)
+{
+  const PetscReal *a;
+  PetscInt stride;
+
+  PetscFunctionBegin;
+  PetscCall(AncfComputeAcceleration(ancf));
+  a = AncfDamped(ancf, ancf->v, ancf->a, 6, &stride);
+  PetscCall(AncfResidual(ancf, ancf->e, 6, a, stride, f, 6));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = M a + C v + Q^e - Q^g - Q^a */
 static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
 {
   Ancf ancf = (Ancf)ctx;
-  const PetscScalar *u, *a;
+  const PetscScalar *u, *v, *a;
   PetscScalar *f;
 
   PetscFunctionBegin;
   (void)ts;
   AncfSetLoadTime((Ancf)ctx, t);
-  (void)V;
   PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(VecGetArrayRead(V, &v));
   PetscCall(VecGetArrayRead(A, &a));
   PetscCall(VecGetArrayWrite(F, &f));
   if (ancf->priming)
     PetscCall(AncfAlphaFunction(ancf, a, f));
   else {
-    PetscCall(AncfResidual(ancf, u, 6, a, 6, f, 6));
+    PetscInt stride;
+    const PetscReal *m = AncfDamped(ancf, v, a, 6, &stride);
+
+    PetscCall(AncfResidual(ancf, u, 6, m, stride, f, 6));
     AncfFixRows(ancf, a, 6, f, 6);
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(A, &a));
+  PetscCall(VecRestoreArrayRead(V, &v));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,22 +165,23 @@ static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, Pe
   (void)t;
   (void)V;
   (void)A;
-  (void)shiftV;
   PetscCall(VecGetArrayRead(U, &u));
   if (((Ancf)ctx)->priming)
     PetscCall(AncfAssembleIdentity((Ancf)ctx, shiftA, P));
   else
-    PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, shiftA, J, P));
+    PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA + ((Ancf)ctx)->damping * shiftV, shiftA, J, P));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F = (edot - v, M vdot + Q^e - Q^g - Q^a), y = (e, v) node by node */
+/* F = (edot - v, M vdot + C v + Q^e - Q^g - Q^a), y = (e, v) node by node */
 static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, void *ctx)
 {
   Ancf ancf = (Ancf)ctx;
   const PetscScalar *y, *yd;
+  const PetscReal *m;
   PetscScalar *f;
+  PetscInt stride;
 
   PetscFunctionBegin;
   (void)ts;
@@ -160,7 +189,8 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(Ydot, &yd));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfResidual(ancf, y, 12, yd + 6, 12, f + 6, 12));
+  m = AncfDamped(ancf, y + 6, yd + 6, 12, &stride);
+  PetscCall(AncfResidual(ancf, y, 12, m, stride, f + 6, 12));
   AncfFixRows(ancf, yd + 6, 12, f + 6, 12);
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) f[c] = yd[c] - y[c + 6];
@@ -179,20 +209,26 @@ static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscRe
   (void)t;
   (void)Ydot;
   PetscCall(VecGetArrayRead(Y, &y));
-  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift, shift, J, P));
+  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift + ((Ancf)ctx)->damping, shift, J, P));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* a = M^-1 (Q^g + Q^a - Q^e), coordinates and result with their own strides */
-PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride)
+PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
+                                        PetscInt astride)
 {
+  const PetscReal damping = v ? ancf->damping : 0;
+
   PetscFunctionBegin;
-  PetscCall(AncfResidual(ancf, e, stride, ancf->resta, 6, a, astride));
+  PetscCall(AncfResidual(ancf, e, stride, ancf->restm, 6, a, astride));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
   AncfFixRows(ancf, NULL, 0, a, astride);
   PetscCall(AncfMassSolve(ancf, a, astride));
+  for (PetscInt j = 0; j < ancf->nnodes && damping > 0; j++)
+    for (int c = 0; c < 6; c++)
+      if (!(ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) a[j * astride + c] -= damping * v[j * stride + c];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,7 +243,7 @@ static PetscErrorCode AncfRHSFunction(TS ts, PetscReal t, Vec Y, Vec G, void *ct
   AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayWrite(G, &g));
-  PetscCall(AncfExplicitAcceleration(ancf, y, 12, g + 6, 12));
+  PetscCall(AncfExplicitAcceleration(ancf, y, y + 6, 12, g + 6, 12));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) g[c] = y[c + 6];
   PetscCall(VecRestoreArrayWrite(G, &g));
@@ -237,7 +273,7 @@ static PetscErrorCode AncfSymplecticMomentum(TS ts, PetscReal t, Vec X, Vec G, v
   AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(G, &g));
-  PetscCall(AncfExplicitAcceleration(ancf, x, 6, g, 6));
+  PetscCall(AncfExplicitAcceleration(ancf, x, NULL, 6, g, 6));
   PetscCall(VecRestoreArrayWrite(G, &g));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -288,6 +324,7 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(ancf->backup));
+  PetscCall(PetscFree(ancf->damped));
   if (!ancf->whole) PetscCall(PetscFree2(ancf->history, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
@@ -376,6 +413,10 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(PetscMalloc1(3 * n, &ancf->backup));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
+  PetscCheck(ancf->damping == 0 || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
+             "-ancf_damping %g needs another -ancf_ts_type than basicsymplectic, which takes no velocities",
+             (double)ancf->damping);
+  if (ancf->damping > 0) PetscCall(PetscMalloc1(6 * ancf->nnodes, &ancf->damped));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
