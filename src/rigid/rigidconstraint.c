@@ -444,6 +444,20 @@ static void FinishJoints(Rigid rigid, PetscReal h)
   }
 }
 
+/* Further on, the constraints have several solutions, and Newton may find the wrong one. */
+static PetscErrorCode CheckTurn(Rigid rigid, PetscInt i, PetscReal h)
+{
+  PetscReal w[3];
+
+  PetscFunctionBegin;
+  RigidBodyOmega(&rigid->body[i], rigid->body[i].q, w);
+  PetscCheck(h * Vec3Norm(w) <= 1., rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT
+             ": turns by %g rad in a step of %g s at t = %g s; a joined body may turn by 1 rad: raise -rigid_substeps",
+             i, (double)(h * Vec3Norm(w)), (double)h, (double)rigid->t);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Stage 1 of a step of h > 0. */
 PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
 {
@@ -457,6 +471,7 @@ PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
   for (PetscInt i = 0; i < rigid->n; i++) {
     if (s->start[i + 1] == s->start[i]) continue;
     PetscCall(RigidBodyCheckLoad(rigid, i));
+    PetscCall(CheckTurn(rigid, i, h));
     if (rigid->body[i].spec.motion != RIGID_FREE) PetscCall(RigidBodyBegin(rigid, i, h));
     s->saved[i] = rigid->body[i];
   }
