@@ -1,6 +1,7 @@
 /* ancf.c - lifecycle, beams, options and state of the Ancf object. */
 #include "ancfimpl.h"
 #include "blocktri.h"
+#include <stdlib.h>
 
 PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 
@@ -340,6 +341,47 @@ PetscErrorCode AncfSetUpBatches(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static int LongestFirst(const void *a, const void *b)
+{
+  const AncfBeam *p = *(const AncfBeam *const *)a, *q = *(const AncfBeam *const *)b;
+
+  if (p->spec.elements != q->spec.elements) return p->spec.elements < q->spec.elements ? 1 : -1;
+  return p->node < q->node ? -1 : 1;
+}
+
+/* Beams of similar length side by side. */
+PetscErrorCode AncfSetUpLaneBeams(Ancf ancf)
+{
+  const AncfBeam **order;
+
+  PetscFunctionBegin;
+  if (2 * ancf->nbeams < ANCF_LANES) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(ancf->nbeams, &order));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) order[b] = &ancf->beams[b];
+  qsort(order, (size_t)ancf->nbeams, sizeof(*order), LongestFirst);
+  ancf->nlanebeams = (ancf->nbeams + ANCF_LANES - 1) / ANCF_LANES;
+  PetscCall(PetscMalloc1(ancf->nlanebeams, &ancf->lanebeams));
+  for (PetscInt k = 0; k < ancf->nlanebeams; k++) {
+    AncfLaneBeams *g = &ancf->lanebeams[k];
+
+    for (PetscInt i = 0; i < ANCF_LANES; i++) {
+      const PetscBool used = ANCF_LANES * k + i < ancf->nbeams ? PETSC_TRUE : PETSC_FALSE;
+      const AncfBeam *m = order[used ? ANCF_LANES * k + i : ANCF_LANES * k];
+
+      g->first[i] = used ? m->node : -1;
+      g->elements[i] = used ? m->spec.elements : -1;
+      g->EA[i] = m->EA;
+      g->EI[i] = m->EI;
+      g->rhoA[i] = m->rhoA;
+      g->l[i] = m->l;
+    }
+    g->most = g->elements[0];
+    g->least = g->elements[ANCF_LANES - 1];
+  }
+  PetscCall(PetscFree(order));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfSetUp(Ancf ancf)
 {
   PetscInt n;
@@ -362,6 +404,7 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   AncfSetUpNodes(ancf);
   PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
   PetscCall(AncfSetUpBatches(ancf));
+  PetscCall(AncfSetUpLaneBeams(ancf));
   PetscCall(AncfSetUpWeight(ancf));
   PetscCall(AncfMassFactor(ancf));
   if (ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
@@ -430,6 +473,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));
+  PetscCall(PetscFree(a->lanebeams));
   PetscCall(PetscFree(a->beams));
   PetscCall(PetscFree(a->prefix));
   PetscCall(PetscFree(*ancf));

@@ -46,6 +46,7 @@ static PetscErrorCode AncfGroupCreate(Ancf ancf, PetscInt first, PetscInt last, 
     g->vprev += 6 * node;
   }
   PetscCall(AncfSetUpBatches(g));
+  PetscCall(AncfSetUpLaneBeams(g));
   if (first == 0) { /* the first group takes over the TS that AncfCreate() made */
     g->ts = ancf->ts;
     PetscCall(PetscObjectReference((PetscObject)g->ts));
@@ -92,6 +93,7 @@ PetscErrorCode AncfGroupDestroy(Ancf ancf)
     PetscCall(AncfTSDestroy(g));
     PetscCall(PetscFree(g->beams));
     PetscCall(PetscFree(g->batches));
+    PetscCall(PetscFree(g->lanebeams));
     PetscCall(PetscFree(g));
   }
   PetscCall(PetscFree(ancf->groups));

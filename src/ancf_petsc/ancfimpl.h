@@ -31,12 +31,20 @@ typedef struct {
   PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
 } AncfBatch;
 
+/* Up to ANCF_LANES beams, one per lane, longest first; unused lanes have no elements. */
+typedef struct {
+  PetscInt first[ANCF_LANES], elements[ANCF_LANES], most, least;
+  PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
+} AncfLaneBeams;
+
 struct _p_Ancf {
   MPI_Comm comm;
   char *prefix;
   PetscInt nbeams, maxbeams, nnodes, nelements, nbatches;
   AncfBeam *beams;
-  AncfBatch *batches;
+  AncfBatch *batches;       /* elements in lanes: everything, for few beams */
+  AncfLaneBeams *lanebeams; /* beams in lanes: the residual of many beams; NULL for few */
+  PetscInt nlanebeams;
   AncfStrain strain;
   PetscInt naxial, nbending, substeps;
   AncfRule rule;
@@ -110,6 +118,7 @@ extern void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscRea
 
 /* ancf.c */
 extern PetscErrorCode AncfSetUpBatches(Ancf ancf);
+extern PetscErrorCode AncfSetUpLaneBeams(Ancf ancf);
 extern PetscErrorCode AncfPrefixTS(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
 

@@ -286,16 +286,19 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
     AncfSection sec = {zero, zero, one};
     AncfLanes mass = zero, Q[12], K[ANCF_TANGENT];
 
+    ShellNode(s, chain, k + 1, e + 6);
     for (int i = 0; i < ANCF_LANES; i++) {
       const AncfBeam *b = &s->ancf->beams[chain[i] < 0 ? 0 : chain[i]];
 
-      if (chain[i] < 0 || k >= b->spec.elements) continue;
+      if (chain[i] < 0 || k >= b->spec.elements) {
+        AncfIdleLane(i, &sec, &mass, e);
+        continue;
+      }
       sec.EA[i] = b->EA;
       sec.EI[i] = b->EI;
       sec.l[i] = b->l;
       mass[i] = s->shift * b->rhoA * b->l;
     }
-    ShellNode(s, chain, k + 1, e + 6);
     AncfElementTangent(&s->ancf->rule, &sec, e, Q, K);
     ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];

@@ -44,19 +44,10 @@ PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
-                            PetscInt fstride)
+/* Elements in lanes; f holds minus the loads already. */
+static void ResidualElements(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                             PetscInt fstride)
 {
-  const PetscReal scale = ancf->loadscale;
-
-  PetscFunctionBegin;
-  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
-  for (PetscInt j = 0; j < ancf->nnodes; j++)
-    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->steady[6 * j + c] + ancf->load[6 * j + c]);
-  if (ancf->loadnow != 0)
-    for (PetscInt j = 0; j < ancf->nnodes; j++)
-      for (PetscInt c = 0; c < 6; c++)
-        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
   for (PetscInt k = 0; k < ancf->nbatches; k++) {
     const AncfBatch *b = &ancf->batches[k];
     AncfSection s = AncfBatchSection(b);
@@ -75,6 +66,63 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, cons
       for (int c = 0; c < 6; c++) fj[fstride + c] += Q[6 + c][i];
     }
   }
+}
+
+/* Beams in lanes: each node is read and written once. */
+static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e, PetscInt stride, const PetscReal *a,
+                          PetscInt astride, PetscReal *f, PetscInt fstride)
+{
+  const AncfSection full = {AncfLoad(b->EA), AncfLoad(b->EI), AncfLoad(b->l)};
+  AncfLanes x[12], y[12], left[6];
+
+  for (int c = 0; c < 12; c++) x[c] = y[c] = (AncfLanes){0};
+  for (int c = 0; c < 6; c++) left[c] = (AncfLanes){0};
+  AncfGatherLane(ancf, b, 0, e, stride, ancf->rest, x);
+  if (a) AncfGatherLane(ancf, b, 0, a, astride, ancf->restm, y);
+  for (PetscInt k = 0; k <= b->most; k++) {
+    AncfLanes Q[12], mass = AncfLoad(b->rhoA);
+    AncfSection s = full;
+
+    if (k < b->most) {
+      AncfGatherLane(ancf, b, k + 1, e, stride, ancf->rest, x + 6);
+      for (int i = 0; i < ANCF_LANES && k >= b->least; i++)
+        if (k >= b->elements[i]) AncfIdleLane(i, &s, &mass, x);
+      AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+      if (a) {
+        AncfGatherLane(ancf, b, k + 1, a, astride, ancf->restm, y + 6);
+        AncfElementInertia(mass, s.l, y, Q);
+      }
+    } else
+      for (int c = 0; c < 12; c++) Q[c] = (AncfLanes){0};
+    for (int c = 0; c < 6; c++) {
+      Q[c] += left[c];
+      left[c] = Q[6 + c];
+      x[c] = x[6 + c];
+      y[c] = y[6 + c];
+    }
+    for (int i = 0; i < ANCF_LANES; i++)
+      if (k <= b->elements[i])
+        for (int c = 0; c < 6; c++) f[(b->first[i] + k) * fstride + c] += Q[c][i];
+  }
+}
+
+PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                            PetscInt fstride)
+{
+  const PetscReal scale = ancf->loadscale;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->steady[6 * j + c] + ancf->load[6 * j + c]);
+  if (ancf->loadnow != 0)
+    for (PetscInt j = 0; j < ancf->nnodes; j++)
+      for (PetscInt c = 0; c < 6; c++)
+        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
+  if (ancf->lanebeams)
+    for (PetscInt k = 0; k < ancf->nlanebeams; k++) ResidualBeams(ancf, &ancf->lanebeams[k], e, stride, a, astride, f, fstride);
+  else
+    ResidualElements(ancf, e, stride, a, astride, f, fstride);
   for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
     const PetscReal *M = ancf->moment + 3 * j;
     PetscReal Q[3];
