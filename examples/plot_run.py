@@ -62,7 +62,8 @@ def plot_history(run, out):
                 if np.ptp(v) > 1e-9 * max(1.0, np.abs(v).max()):
                     ax.plot(t, v, color=colour, label=c)
             ax.set(title=title, ylabel=label)
-            ax.legend(frameon=False)
+            if ax.lines:
+                ax.legend(frameon=False)
         axes[-1, 0].set_xlabel("time, s")
     for ax in fig.axes:
         ax.grid(alpha=0.25)

@@ -57,6 +57,15 @@ bad("-sph_dp 1e-6", "sph_dp", "markers")
 bad("-gravity 0,0", "gravity", "2 numbers", "3")
 bad("-gravity 0,0,down", "gravity", "down", "not a number")
 
+bad("-domain_hi 0.41,0.4,0.4", "periodic axis x", r"0\.41", r"0\.04")
+bad("-body_ball_position 0.2,0.2,2", "ball", "outside of the domain", "z = 2")
+bad("-beam_rod_start 0.2,0.2,-1 -beam_rod_end 0.2,0.2,-0.5", "rod", "outside of the domain")
+bad("-body_ball_shape mesh", "ball", "body_ball_file", "STL")
+bad("-body_ball_shape mesh -body_ball_file nosuch.stl", "nosuch.stl", code=3)
+bad("-body_ball_shape cone", "shape", "cone", "none of")
+bad("-body_ball_lock q", "lock", "none of")
+bad("-beams none", "beam_rod_", "does not list 'rod'")
+
 # Markers on top of one another.
 bad("-beams rod,twin -beam_twin_start 0.05,0.2,0.2 -beam_twin_end 0.2,0.2,0.2 -beam_twin_elements 2 -beam_twin_diameter 0.06 "
     "-beam_twin_density 2000 -beam_twin_young 1e6", "on top|overlap|closer|same place|coincide")
@@ -105,6 +114,8 @@ frond.refuses(["run", "."], ["folder"], 3)
 bad("-output_dir /dev/null/x", "output_dir", "/dev/null", code=3)
 bad("-output_dir afile", "output_dir", "afile", code=3)
 bad("-output_dir afile/deep/er", "output_dir", "afile", code=3)
+for folder in ("/dev/null/x", "afile", "afile/deep/er"):
+    frond.refuses(["check", "small.yaml", "-output_dir", folder], ["output_dir", folder.split("/deep")[0]], 3)
 
 # The command line itself.
 frond.refuses(["dance"], ["dance", "no command"])

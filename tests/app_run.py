@@ -233,6 +233,35 @@ def test_lid():
     check(history("out_lid")["wall_ymax_fx"][1][-1] < 0, "the fluid holds the lid back")
 
 
+def cube_stl(a):
+    """A cube of edge a about the origin: 12 facets, counter-clockwise from outside."""
+    lines = ["solid cube"]
+    for axis in range(3):
+        for side in (-1, 1):
+            u, v = [(1, 2), (2, 0), (0, 1)][axis]
+            corner = []
+            for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+                p = [0, 0, 0]
+                p[axis], p[u], p[v] = side * a / 2, s * a / 2, t * a / 2
+                corner.append("vertex %g %g %g" % tuple(p))
+            if side < 0:
+                corner.reverse()
+            for i, j, k in ((0, 1, 2), (0, 2, 3)):
+                lines += ["facet normal 0 0 0", "outer loop", corner[i], corner[j], corner[k], "endloop", "endfacet"]
+    return "\n".join(lines + ["endsolid cube"]) + "\n"
+
+
+def test_mesh():
+    """A cube from an STL file takes the same lattice sites from the fluid as a box."""
+    frond.write("cube.stl", cube_stl(130.0))
+    options = ("-body_ball_position", "0.3,0.2,0.2", "-time_end", "0.001")
+    frond.runs("run", "small.yaml", "-output_dir", "mesh", "-body_ball_shape", "mesh", "-body_ball_file", "cube.stl", "-body_ball_scale", "1e-3", *options)
+    frond.runs("run", "small.yaml", "-output_dir", "box", "-body_ball_shape", "box", "-body_ball_size", "0.13,0.13,0.13", *options)
+    with h5py.File(frond.path("mesh", "frame_00000.h5")) as a, h5py.File(frond.path("box", "frame_00000.h5")) as b:
+        sites = [h["markers/position"][:][h["markers/group"][:] == -1] for h in (a, b)]
+        check(np.array_equal(*sites), "fluid sites around the mesh and the box: %d, %d" % (len(sites[0]), len(sites[1])))
+
+
 def test_ranks():
     """One rank for now: two are refused in one line."""
     if not shutil.which("mpirun"):
@@ -255,5 +284,6 @@ test_signals()
 test_kill()
 test_full_disk()
 test_lid()
+test_mesh()
 test_ranks()
 apptest.report()

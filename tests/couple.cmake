@@ -12,3 +12,7 @@ set_tests_properties(couple_cantilever_fine PROPERTIES LABELS validation-long TI
 frond_test(test_couple_cylinder SOURCES test_couple_cylinder.c LABELS validation)
 add_test(NAME test_couple_cylinder_fine COMMAND test_couple_cylinder -dp 0.125,0.0833333333333,0.0625)
 set_tests_properties(test_couple_cylinder_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+add_test(NAME couple_substeps COMMAND ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/couple_substeps.py
+  $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/couple_substeps ${PROJECT_SOURCE_DIR})
+set_tests_properties(couple_substeps PROPERTIES LABELS validation TIMEOUT 600 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+frond_test(test_couple_light SOURCES test_couple_light.c LABELS validation)

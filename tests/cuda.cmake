@@ -16,8 +16,9 @@ if(CMAKE_CXX_COMPILER)
   # The fluid alone, with the CUDA backend compiled by the host compiler.
   file(GLOB cuda_sources CONFIGURE_DEPENDS ${sph}/sph_cuda*.cu)
   set_source_files_properties(${cuda_sources} PROPERTIES LANGUAGE CXX)
-  add_library(sph_shim STATIC ${sph}/sph.c ${sph}/sphoptions.c ${sph}/sphmarkers.c ${sph}/sphfill.c ${sph}/sphcell.c ${sph}/sphwall.c
-    ${sph}/sphcheck.c ${sph}/sph_cpu.c ${cuda_sources} cuda_shim/cuda_shim.cpp)
+  get_target_property(sph_sources frond_sph SOURCES)
+  list(TRANSFORM sph_sources PREPEND ${sph}/)
+  add_library(sph_shim STATIC ${sph_sources} ${cuda_sources} cuda_shim/cuda_shim.cpp)
   foreach(precision single double)
     add_library(sph_shim_${precision} OBJECT ${sph}/sph_cpupairs.c)
     target_compile_definitions(sph_shim_${precision} PRIVATE SPH_PAIRS_${precision})

@@ -357,6 +357,180 @@ static PetscErrorCode TestRestore(const char options[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  A support accelerated by a is a beam at rest under gravity -a, seen from the support (Galilei and d'Alembert): same relative
+  motion and support force. An implicit stage sees the support where it is at the stage's time and the beam at an average of its
+  positions, a dt^2/8 off: second order in dt, with a factor of up to 5 after a third of the swing. Explicit stages agree to the
+  order of the method. Then the support goes on uniformly.
+*/
+static PetscErrorCode TestMovingSupport(const char options[], PetscReal dt, PetscReal *err)
+{
+  const PetscReal tol = 5 * 9.81 * dt * dt / 8, acc[6] = {1.5, 0, 9.81, 0, 0, 0};
+  PetscReal g[3] = {-1.5, 0, -9.81}, e0[6] = {0, 0, 0, 1, 0, 0}, v0[6] = {0}, f[6], r[6], vend[6] = {0}, none[6] = {0};
+  const PetscReal *x, *y, *vx, *vy;
+  AncfBeamSpec s;
+  Ancf a, b;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(3, &s));
+  PetscCall(BeamCreate(&s, 0, options, &a));
+  PetscCall(BeamCreate(&s, 0, options, &b));
+  PetscCall(AncfSetNodeMotion(a, 0, 0, e0, v0, acc));
+  PetscCall(AncfSetGravity(b, g));
+  PetscCall(AncfGetNodeReaction(a, 0, 0, f));
+  PetscCall(AncfGetNodeReaction(b, 0, 0, r));
+  for (int c = 0; c < 6; c++) TEST_NEAR(f[c], r[c], 1e-9, "support force at the start"); /* round-off of 90 N */
+  for (int i = 1; i <= (int)(0.3 / dt + 0.5); i++) {
+    PetscCall(AncfAdvance(a, i * dt));
+    PetscCall(AncfAdvance(b, i * dt));
+  }
+  PetscCall(AncfGetState(a, NULL, &x, &vx, NULL));
+  PetscCall(AncfGetState(b, NULL, &y, &vy, NULL));
+  PetscCall(AncfGetNodeReaction(a, 0, 0, f));
+  PetscCall(AncfGetNodeReaction(b, 0, 0, r));
+  printf("%-80s moving support: tip %.1e m, force %.1e N\n", options, (double)PetscAbsReal(x[20] - x[2] - y[20]),
+         (double)PetscAbsReal(f[2] - r[2]));
+  *err = PetscAbsReal(x[20] - x[2] - y[20]);
+  for (int c = 0; c < 3; c++) {
+    TEST_NEAR(x[c], 0.5 * acc[c] * 0.09, 1e-13, "position of the support");
+    TEST_NEAR(vx[c], acc[c] * 0.3, 1e-13, "velocity of the support");
+    TEST_NEAR(x[18 + c] - x[c], y[18 + c], tol, options);
+    TEST_NEAR(vx[18 + c] - vx[c], vy[18 + c], 100 * tol, options);
+  }
+  for (int c = 0; c < 6; c++) TEST_NEAR(f[c], r[c], 1e-3 * 130, "support force");
+  for (int c = 0; c < 6; c++) {
+    e0[c] = x[c];
+    vend[c] = vx[c];
+  }
+  PetscCall(AncfSetNodeMotion(a, 0, 0, e0, vend, none));
+  PetscCall(AncfAdvance(a, 0.31));
+  PetscCall(AncfGetState(a, NULL, &x, &vx, NULL));
+  for (int c = 0; c < 6; c++) TEST_NEAR(x[c], e0[c] + 0.01 * vend[c], 1e-13, "uniform motion of the support");
+  TEST_ERROR(AncfSetNodeMotion(a, 0, 2, e0, v0, acc), PETSC_ERR_ARG_WRONG, "no support");
+  PetscCall(AncfDestroy(&a));
+  PetscCall(AncfDestroy(&b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Damping C = alpha M slows a rigid translation as exp(-alpha t): second-order methods err by alpha^3 t dt^2/12 < 1e-6. */
+static PetscErrorCode TestDamping(const char type[])
+{
+  const PetscReal alpha = 3, dt = 1e-3;
+  char options[160];
+  PetscReal p[3], p0[3];
+  AncfBeamSpec s;
+  Ancf a;
+
+  PetscFunctionBegin;
+  snprintf(options, sizeof(options), "%s -ancf_damping 3", type);
+  PetscCall(SeedSpec(3, &s));
+  s.end0 = ANCF_END_FREE;
+  s.velocity[1] = 2;
+  PetscCall(BeamCreate(&s, 0, options, &a));
+  PetscCall(AncfGetMomentum(a, p0, NULL));
+  for (int i = 1; i <= 500; i++) PetscCall(AncfAdvance(a, i * dt));
+  PetscCall(AncfGetMomentum(a, p, NULL));
+  TEST_REL(p[1], p0[1] * PetscExpReal(-0.5 * alpha), 3e-6, options);
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A beam pinned in the middle as well: its deflection under a uniform load is that of a continuous beam over two spans. */
+static PetscErrorCode TestInnerSupport(void)
+{
+  const PetscReal q[3] = {0, 0, -1e-3};
+  PetscReal f[6], l = 0;
+  AncfBeamSpec s;
+  Ancf a;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(8, &s));
+  s.end0 = s.end1 = ANCF_END_PIN;
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+  PetscCall(AncfAddBeam(a, &s, NULL));
+  PetscCall(AncfFixNode(a, 0, 4, ANCF_END_PIN));
+  PetscCall(AncfSetUp(a));
+  PetscCall(AncfAddLineLoad(a, 0, q));
+  PetscCall(AncfSolveStatic(a, 1));
+  PetscCall(AncfGetNodeReaction(a, 0, 4, f));
+  TEST_REL(f[2], 1e-3 * 10. / 16, 1e-5, "middle support carries 5/8 of the load"); /* two spans of L/2: 10/8 q (L/2) */
+  PetscCall(AncfGetBeam(a, 0, NULL, NULL, &l));
+  TEST_REL(l, 0.125, 1e-15, "element length");
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define QUAD22 "-ancf_quadrature_axial 2 -ancf_quadrature_bending 2"
+/* Many beams in groups: as one beam alone, to Newton's tolerance; in blocktri as with the assembled matrix. */
+static PetscErrorCode TestGroups(void)
+{
+  static const char *const options[] = {"-ancf_group_nodes 60",
+                                        "-ancf_group_nodes 100000",
+                                        "-ancf_group_nodes 60 -ancf_pc_type ilu",
+                                        "-ancf_pc_type blocktri -ancf_mat_type baij",
+                                        "-ancf_pc_type blocktri -ancf_mat_type aij",
+                                        "-ancf_ts_type bdf -ancf_group_nodes 60",
+                                        "-ancf_ts_type bdf -ancf_pc_type blocktri",
+                                        QUAD22 " -ancf_pc_type ilu",
+                                        QUAD22};
+  PetscReal tips[9][40], alone[3];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 9; k++) {
+    const PetscReal g[3] = {0, 0, -9.81};
+    const PetscReal *e;
+    PetscOptions db;
+    PetscReal *Q;
+    Ancf a;
+
+    PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+    for (int b = 0; b < 40; b++) { /* 2 to 6 elements: lanes of unequal length */
+      AncfBeamSpec s;
+
+      PetscCall(SeedSpec(2 + b % 5, &s));
+      s.start[1] = s.end[1] = b;
+      if (b % 7 == 3) s.end0 = ANCF_END_PIN;
+      if (b % 7 == 5) s.end0 = ANCF_END_FREE;
+      PetscCall(AncfAddBeam(a, &s, NULL));
+    }
+    PetscCall(AncfSetGravity(a, g));
+    PetscCall(PetscOptionsCreate(&db));
+    PetscCall(PetscOptionsInsertString(db, options[k]));
+    PetscCall(PetscOptionsPush(db));
+    PetscCall(AncfSetFromOptions(a));
+    PetscCall(AncfSetUp(a));
+    PetscCall(PetscOptionsPop());
+    PetscCall(PetscOptionsDestroy(&db));
+    for (int i = 1; i <= 100; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
+    PetscCall(AncfSaveState(a));
+    PetscCall(AncfGetLoads(a, &Q));
+    Q[6 * 151 + 2] = NAN;
+    TEST_ERROR(AncfAdvance(a, 0.101), PETSC_ERR_FP, "Beam 30, node 1"); /* 3+4+5+6+7 nodes in 5 beams: node 150 starts beam 30 */
+    Q[6 * 151 + 2] = 1e200;
+    if (k < 5) TEST_ERROR(AncfAdvance(a, 0.101), PETSC_ERR_NOT_CONVERGED, "beam 30, node 1");
+    PetscCall(AncfZeroLoads(a));
+    for (int i = 101; i <= 120; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
+    if (k < 5) {
+      PetscCall(AncfRestoreState(a));
+      for (int i = 101; i <= 120; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
+    }
+    PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
+    for (PetscInt b = 0; b < 40; b++) {
+      AncfBeamSpec s;
+      PetscInt first;
+
+      PetscCall(AncfGetBeam(a, b, &s, &first, NULL));
+      tips[k][b] = e[6 * (first + s.elements) + 2];
+    }
+    PetscCall(AncfDestroy(&a));
+  }
+  for (int k = 1; k < 9; k++)
+    for (int b = 0; b < 40; b++) TEST_NEAR(tips[k][b], tips[k < 5 ? 0 : k < 7 ? 5 : 7][b], 1e-8, options[k]);
+  PetscCall(Swing("", 2, 1e-3, 0.12, alone, NULL));
+  TEST_NEAR(tips[0][0], alone[2], 1e-8, "a beam among many as a beam alone");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBad(AncfBeamSpec s)
 {
   Ancf a;
@@ -416,6 +590,8 @@ static PetscErrorCode TestBadInput(void)
   TEST_ERROR(CreateBad("-ancf_fluid_density -1"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_fluid_density");
   TEST_ERROR(CreateBad("-ancf_quadrature_axial 0"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_quadrature_axial");
   TEST_ERROR(CreateBad("-ancf_quadrature_bending 9"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_quadrature_bending");
+  TEST_ERROR(CreateBad("-ancf_damping -1"), PETSC_ERR_ARG_OUTOFRANGE, "-ancf_damping");
+  TEST_ERROR(CreateBad("-ancf_damping 1 -ancf_ts_type basicsymplectic"), PETSC_ERR_ARG_INCOMP, "-ancf_damping");
   TEST_ERROR(CreateBad("-ancf_ts_type pseudo"), PETSC_ERR_ARG_WRONG, "-ancf_ts_type pseudo");
   TEST_ERROR(CreateBad("-ancf_ts_type arkimex -ancf_ts_arkimex_type 3"), PETSC_ERR_ARG_WRONG, "-ancf_ts_arkimex_type 3");
   PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
@@ -483,6 +659,8 @@ int main(int argc, char **argv)
   PetscCall(TestJacobian("-ancf_ts_type alpha2", PETSC_TRUE));
   PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_strain engineering", PETSC_TRUE));
   PetscCall(TestJacobian("-ancf_ts_type bdf", PETSC_FALSE));
+  PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_damping 7", PETSC_TRUE));
+  PetscCall(TestJacobian("-ancf_ts_type theta -ancf_damping 7", PETSC_FALSE));
   PetscCall(TestTypes());
   PetscCall(TestContinuation("-ancf_ts_type alpha2"));
   PetscCall(TestContinuation("-ancf_ts_type bdf"));
@@ -499,6 +677,23 @@ int main(int argc, char **argv)
   PetscCall(TestRestore("-ancf_ts_type alpha2 -ancf_ts_alpha_radius 1"));
   PetscCall(TestRestore("-ancf_ts_type theta"));
   PetscCall(TestRestore("-ancf_ts_type rk -ancf_substeps 4"));
+  {
+    static const char *const types[] = {"-ancf_ts_alpha_radius 1", "-ancf_ts_type alpha2", "-ancf_ts_type theta",
+                                        "-ancf_ts_type rk -ancf_substeps 5",
+                                        "-ancf_ts_type basicsymplectic -ancf_ts_basicsymplectic_type 2 -ancf_substeps 5"};
+    PetscReal coarse, fine;
+
+    for (int k = 0; k < 5; k++) {
+      PetscCall(TestMovingSupport(types[k], 1e-3, &coarse));
+      PetscCall(TestMovingSupport(types[k], 5e-4, &fine));
+      TEST(fine < coarse / 3 || fine < 1e-9, "%s: error %g after %g with twice the step", types[k], (double)fine, (double)coarse);
+    }
+  }
+  PetscCall(TestDamping("-ancf_ts_type alpha2"));
+  PetscCall(TestDamping("-ancf_ts_type theta"));
+  PetscCall(TestDamping("-ancf_ts_type rk -ancf_substeps 4"));
+  PetscCall(TestInnerSupport());
+  PetscCall(TestGroups());
   PetscCall(TestBadInput());
   PetscCall(TestFailures());
   PetscCall(PetscFinalize());

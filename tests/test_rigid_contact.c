@@ -188,8 +188,9 @@ static PetscErrorCode TestHertz(PetscReal e)
     PetscCall(RigidGetBody(r, b, &s));
     m[b] = s.mass;
   }
-  const PetscReal mred = m[0] * m[1] / (m[0] + m[1]), k = 4. / 3. * p.modulus * sqrt(R), d = pow(1.25 * mred * v0 * v0 / k, .4),
+  const PetscReal mred = m[0] * m[1] / (m[0] + m[1]), k = 4. / 3. * p.modulus * sqrt(R), d = ShortRangeOverlap(&p, R, mred, v0),
                   tc = ShortRangeContactTime(&p, R, mred, v0);
+  TEST_REL(.4 * k * pow(d, 2.5), .5 * mred * v0 * v0, 1e-12, "work of the contact force up to the largest overlap");
   TEST_REL(tc, 2.9433 * d / v0, 1e-4, "Hertz contact time");
   PetscCall(RigidGetMomentum(r, p0, L0));
   const PetscReal dt = tc / 200.;

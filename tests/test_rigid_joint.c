@@ -593,6 +593,44 @@ static PetscErrorCode TestCarried(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A body that spins about a hinge off its centre turns by a = 2 asin(w h/2) a step, a chord of length w h r; its turns are
+ * counted. */
+static PetscErrorCode TestTurns(void)
+{
+  Rigid r;
+  RigidBodySpec s;
+  const PetscReal w = 20., wh = .4, J = .1, mr2 = .5;
+  PetscReal lo = 0., hi = 1., c, ke0, ke, p, v;
+
+  PetscFunctionBegin;
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+  PetscCall(Rod(&s, 1., 2., .2, .1));
+  s.position[0] = .5;
+  s.velocity[1] = .5 * w;
+  s.omega[2] = w;
+  s.inertia[2] = J;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(Joint(r, RIGID_JOINT_HINGE, 0, RIGID_GROUND, 0., 0., 0., 2));
+  PetscCall(RigidSetUp(r));
+  PetscCall(RigidGetEnergy(r, &ke0, NULL));
+  for (int n = 1; n <= 200; n++) PetscCall(RigidAdvance(r, n * wh / w));
+  PetscCall(RigidGetJointState(r, 0, &c, NULL));
+  PetscCall(RigidGetJointError(r, &p, &v));
+  PetscCall(RigidGetEnergy(r, &ke, NULL));
+  for (int it = 0; it < 60; it++) {
+    const PetscReal a = .5 * (lo + hi);
+    if (J * a + mr2 * sin(a) < (J + mr2) * wh)
+      lo = a;
+    else
+      hi = a;
+  }
+  TEST_REL(c, 200. * lo, 1e-10, "turns about the hinge");
+  TEST_REL(ke, ke0, 1e-10, "energy of the rotor");
+  TEST(p < 1e-12 && v < 1e-10, "constraints violated by %g, %g", p, v);
+  PetscCall(RigidDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static char message[1024];
 
 static PetscErrorCode Catch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
@@ -654,6 +692,9 @@ static PetscErrorCode TestBadInput(void)
   Refused(RigidAdvance(r, .1), "torn joint", "joint 0 (hinge", "not assembled");
   Refused(RigidAddJoint(r, &good, NULL), "late joint", "RigidAddJoint", "before");
   Refused(RigidGetJointState(r, 1, NULL, NULL), "no such joint", "joint 1", "1 joints");
+  const PetscReal X0[3] = {0., 0., 0.}, W[3] = {0., 0., 12.5};
+  PetscCall(RigidSetState(r, 0, X0, NULL, NULL, W));
+  Refused(RigidAdvance(r, .1), "long step", "body 0: turns by 1.25 rad", "-rigid_substeps");
   PetscCall(RigidDestroy(&r));
   PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
   PetscCall(RigidAddBody(r, &body, NULL));
@@ -679,6 +720,7 @@ int main(int argc, char **argv)
   PetscCall(TestTumble());
   PetscCall(TestYield());
   PetscCall(TestCarried());
+  PetscCall(TestTurns());
   PetscCall(TestBadInput());
   PetscCall(PetscFinalize());
   return test_report();

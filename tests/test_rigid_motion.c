@@ -560,6 +560,41 @@ static PetscErrorCode TestOtherMotions(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Motion table: velocity linear between its times, so that the path is made of parabolas, exact for any steps; slope =
+ * acceleration. */
+static PetscErrorCode TestTable(void)
+{
+  Rigid r;
+  RigidBodySpec s;
+  const PetscReal t[3] = {.1, .35, .8}, v[9] = {0., 1., 0., 2., 1., 0., -1., 1., 0.}, w[9] = {0., 0., 0., 0., 0., 4., 0., 0., 4.};
+  PetscReal X[3], q[4], V[3], W[3], A[3], al[3], now = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(Begin(&r, &s));
+  s.motion = RIGID_PRESCRIBED;
+  s.velocity[0] = 99.;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidSetMotionTable(r, 0, 3, t, v, w));
+  PetscCall(RigidSetUp(r));
+  for (int n = 1; now < .6; n++) PetscCall(RigidAdvance(r, now = n * .03));
+  PetscCall(RigidGetState(r, 0, X, q, V, W));
+  PetscCall(RigidGetAcceleration(r, 0, A, al));
+  const PetscReal x1 = .5 * .25 * 2., dt = now - .35, angle = .5 * .25 * 4. + 4. * dt;
+  TEST_NEAR(X[0], x1 + 2. * dt - .5 * 3. / .45 * dt * dt, 1e-14, "path");
+  TEST_NEAR(X[1], now, 1e-14, "path");
+  TEST_NEAR(V[0], 2. - 3. / .45 * dt, 1e-14, "velocity");
+  TEST_NEAR(A[0], -3. / .45, 1e-13, "acceleration");
+  TEST_NEAR(q[3], sin(.5 * angle), 1e-14, "turn");
+  TEST_NEAR(W[2], 4., 0., "angular velocity");
+  PetscCall(RigidAdvance(r, 1.));
+  PetscCall(RigidGetState(r, 0, X, NULL, V, NULL));
+  PetscCall(RigidGetAcceleration(r, 0, A, NULL));
+  TEST_NEAR(X[0], x1 + .5 * .45 * 1. - .2, 1e-14, "after the table");
+  TEST(V[0] == -1. && A[0] == 0., "after the table: %g m/s, %g m/s^2", V[0], A[0]);
+  PetscCall(RigidDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscCall(PetscInitialize(&argc, &argv, NULL, help));
@@ -575,6 +610,7 @@ int main(int argc, char **argv)
   PetscCall(TestHeavyTop());
   PetscCall(TestLocks());
   PetscCall(TestOtherMotions());
+  PetscCall(TestTable());
   PetscCall(PetscFinalize());
   return test_report();
 }

@@ -356,9 +356,15 @@ static PetscErrorCode TestBadInput(void)
   Refused(RigidSetDimension(r, 1), "dim = 1", "-rigid_dimension 1", "2 or 3");
   PetscCall(RigidAddBody(r, &ok, NULL));
   Refused(RigidSetDimension(r, 2), "dim after bodies", "RigidSetDimension", "before");
+  const PetscReal tt[2] = {1.5, 1.5}, vv[6] = {0.};
+  Refused(RigidSetMotionTable(r, 0, 2, tt, vv, NULL), "table of a free body", "body 0", "prescribed");
+  ok.motion = RIGID_PRESCRIBED;
+  PetscCall(RigidAddBody(r, &ok, NULL));
+  Refused(RigidSetMotionTable(r, 1, 2, tt, vv, NULL), "times that stand still", "body 1: time 1", "1.5 s; times must increase");
+  Refused(RigidSetMotionTable(r, 1, 0, tt, vv, NULL), "empty table", "body 1", "0 entries");
   Refused(RigidGetState(r, 0, x = NULL, NULL, NULL, NULL), "no set-up", "RigidSetUp", "first");
   PetscCall(RigidSetUp(r));
-  Refused(RigidGetState(r, 1, NULL, NULL, NULL, NULL), "no such body", "body 1", "1 bodies");
+  Refused(RigidGetState(r, 2, NULL, NULL, NULL, NULL), "no such body", "body 2", "2 bodies");
   Refused(RigidAddBody(r, &ok, NULL), "late body", "RigidAddBody", "before");
   PetscCall(RigidAdvance(r, 1.));
   Refused(RigidAdvance(r, .5), "backwards", "t = 0.5", ">= the present time 1");

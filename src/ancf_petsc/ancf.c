@@ -1,6 +1,7 @@
 /* ancf.c - lifecycle, beams, options and state of the Ancf object. */
 #include "ancfimpl.h"
 #include "blocktri.h"
+#include <stdlib.h>
 
 PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 
@@ -26,7 +27,7 @@ static PetscErrorCode AncfRegister(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfPrefixTS(Ancf ancf)
+PetscErrorCode AncfPrefixTS(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCall(TSSetOptionsPrefix(ancf->ts, ancf->prefix));
@@ -50,6 +51,7 @@ PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf)
   a->comm = comm;
   a->substeps = 1;
   a->loadscale = 1;
+  a->groupnodes = ANCF_DEFAULT_GROUP;
   a->naxial = ANCF_DEFAULT_AXIAL;
   a->nbending = ANCF_DEFAULT_BENDING;
   PetscCall(AncfTSCreate(a));
@@ -225,11 +227,37 @@ PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Mass-proportional (Rayleigh) damping C = damping M, 1/s: a mode of frequency w rad/s has the damping ratio damping/(2 w).
+ * Default 0. */
+PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping)
+{
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_damping cannot change after AncfSetUp()");
+  PetscCheck(damping >= 0 && !PetscIsInfOrNanReal(damping), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_damping %g 1/s must be finite and not negative", (double)damping);
+  ancf->damping = damping;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  AncfSetGroupNodes - beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in
+  cache (default 1000). A set of fewer than twice as many nodes is one group, and so is any set whose TS was asked for by
+  AncfGetTS() before AncfSetUp().
+*/
+PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes)
+{
+  PetscFunctionBegin;
+  PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_group_nodes cannot change after AncfSetUp()");
+  PetscCheck(nodes >= 1, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "-ancf_group_nodes %" PetscInt_FMT " must be at least 1", nodes);
+  ancf->groupnodes = nodes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfSetFromOptions(Ancf ancf)
 {
   PetscReal g[3];
-  PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending;
-  PetscReal rho = ancf->fluiddensity;
+  PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending, group = ancf->groupnodes;
+  PetscReal rho = ancf->fluiddensity, damping = ancf->damping;
   AncfStrain strain = ancf->strain;
   PetscBool flg, flg2;
 
@@ -252,26 +280,14 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   PetscCall(PetscOptionsInt("-ancf_quadrature_bending", "Gauss points per element for the bending energy, 2..8",
                             "AncfSetQuadrature", bending, &bending, &flg2));
   if (flg || flg2) PetscCall(AncfSetQuadrature(ancf, axial, bending));
+  PetscCall(PetscOptionsReal("-ancf_damping", "Mass-proportional damping, 1/s", "AncfSetDamping", damping, &damping, &flg));
+  if (flg) PetscCall(AncfSetDamping(ancf, damping));
+  PetscCall(PetscOptionsInt("-ancf_group_nodes", "Nodes per group of beams with a TS of its own", "AncfSetGroupNodes", group,
+                            &group, &flg));
+  if (flg) PetscCall(AncfSetGroupNodes(ancf, group));
   PetscOptionsEnd();
+  ancf->fromoptions = PETSC_TRUE;
   PetscCall(TSSetFromOptions(ancf->ts));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Q^g = integral of (rho_s A - rho A_outer) S^T g (Eq. 24 less buoyancy). */
-PetscErrorCode AncfSetUpWeight(Ancf ancf)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(ancf->weight, 6 * ancf->nnodes));
-  for (PetscInt b = 0; b < ancf->nbeams; b++) {
-    const AncfBeam *beam = &ancf->beams[b];
-    PetscReal w[4], q = beam->rhoA - ancf->fluiddensity * beam->area;
-
-    AncfElementLoad(beam->l, w);
-    for (PetscInt k = 0; k < beam->spec.elements; k++)
-      for (PetscInt i = 0; i < 4; i++)
-        for (PetscInt c = 0; c < 3; c++) ancf->weight[6 * (beam->node + k) + 3 * i + c] += w[i] * q * ancf->gravity[c];
-  }
-  ancf->avalid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,9 +311,11 @@ static void AncfSetUpNodes(Ancf ancf)
     ancf->fixed[ancf->beams[b].node] = bits[s->end0];
     ancf->fixed[ancf->beams[b].node + s->elements] = bits[s->end1];
   }
+  for (PetscInt k = 0; k < ancf->nsupports; k++)
+    ancf->fixed[ancf->beams[ancf->supports[k].beam].node + ancf->supports[k].node] |= bits[ancf->supports[k].how];
 }
 
-static PetscErrorCode AncfSetUpBatches(Ancf ancf)
+PetscErrorCode AncfSetUpBatches(Ancf ancf)
 {
   PetscInt n = 0;
 
@@ -323,6 +341,47 @@ static PetscErrorCode AncfSetUpBatches(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static int LongestFirst(const void *a, const void *b)
+{
+  const AncfBeam *p = *(const AncfBeam *const *)a, *q = *(const AncfBeam *const *)b;
+
+  if (p->spec.elements != q->spec.elements) return p->spec.elements < q->spec.elements ? 1 : -1;
+  return p->node < q->node ? -1 : 1;
+}
+
+/* Beams of similar length side by side. */
+PetscErrorCode AncfSetUpLaneBeams(Ancf ancf)
+{
+  const AncfBeam **order;
+
+  PetscFunctionBegin;
+  if (2 * ancf->nbeams < ANCF_LANES) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(ancf->nbeams, &order));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) order[b] = &ancf->beams[b];
+  qsort(order, (size_t)ancf->nbeams, sizeof(*order), LongestFirst);
+  ancf->nlanebeams = (ancf->nbeams + ANCF_LANES - 1) / ANCF_LANES;
+  PetscCall(PetscMalloc1(ancf->nlanebeams, &ancf->lanebeams));
+  for (PetscInt k = 0; k < ancf->nlanebeams; k++) {
+    AncfLaneBeams *g = &ancf->lanebeams[k];
+
+    for (PetscInt i = 0; i < ANCF_LANES; i++) {
+      const PetscBool used = ANCF_LANES * k + i < ancf->nbeams ? PETSC_TRUE : PETSC_FALSE;
+      const AncfBeam *m = order[used ? ANCF_LANES * k + i : ANCF_LANES * k];
+
+      g->first[i] = used ? m->node : -1;
+      g->elements[i] = used ? m->spec.elements : -1;
+      g->EA[i] = m->EA;
+      g->EI[i] = m->EI;
+      g->rhoA[i] = m->rhoA;
+      g->l[i] = m->l;
+    }
+    g->most = g->elements[0];
+    g->least = g->elements[ANCF_LANES - 1];
+  }
+  PetscCall(PetscFree(order));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfSetUp(Ancf ancf)
 {
   PetscInt n;
@@ -331,15 +390,27 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   if (ancf->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(ancf->nbeams > 0, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetUp: no beams, call AncfAddBeam() first");
   n = 6 * ancf->nnodes;
-  PetscCall(PetscCalloc6(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->rest));
+  PetscCall(
+      PetscCalloc7(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->steady, n, &ancf->rest));
   PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * ancf->nnodes, &ancf->mass));
+  for (PetscInt k = 0; k < ancf->nsupports; k++) {
+    const PetscReal *v = ancf->beams[ancf->supports[k].beam].spec.velocity;
+
+    PetscCheck(v[0] == 0 && v[1] == 0 && v[2] == 0, ancf->comm, PETSC_ERR_ARG_INCOMP,
+               "Beam %" PetscInt_FMT ": velocity = (%g, %g, %g) m/s must be zero because its node %" PetscInt_FMT " is fixed",
+               ancf->supports[k].beam, (double)v[0], (double)v[1], (double)v[2], ancf->supports[k].node);
+  }
   PetscCall(AncfRuleSetUp(&ancf->rule, ancf->strain, ancf->naxial, ancf->nbending));
   AncfSetUpNodes(ancf);
   PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
   PetscCall(AncfSetUpBatches(ancf));
+  PetscCall(AncfSetUpLaneBeams(ancf));
   PetscCall(AncfSetUpWeight(ancf));
   PetscCall(AncfMassFactor(ancf));
-  PetscCall(AncfTSSetUp(ancf));
+  if (ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
+    PetscCall(AncfGroupSetUp(ancf));
+  else
+    PetscCall(AncfTSSetUp(ancf));
   ancf->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -361,7 +432,8 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "gravity (%g, %g, %g) m/s^2, fluid density for buoyancy %g kg/m^3\n",
                                    (double)ancf->gravity[0], (double)ancf->gravity[1], (double)ancf->gravity[2],
                                    (double)ancf->fluiddensity));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT "\n", ancf->substeps));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT ", mass-proportional damping %g 1/s\n", ancf->substeps,
+                                   (double)ancf->damping));
   for (PetscInt b = 0; b < PetscMin(ancf->nbeams, 10); b++) {
     const AncfBeam *m = &ancf->beams[b];
 
@@ -374,6 +446,9 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
   if (ancf->nbeams > 10) PetscCall(PetscViewerASCIIPrintf(viewer, "and %" PetscInt_FMT " more beams\n", ancf->nbeams - 10));
   if (ancf->setup) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "form: %s\n", AncfForms[ancf->form]));
+    if (ancf->ngroups)
+      PetscCall(
+          PetscViewerASCIIPrintf(viewer, "groups %" PetscInt_FMT ", each with a TS as this one of the first\n", ancf->ngroups));
     PetscCall(TSView(ancf->ts, viewer));
   }
   PetscCall(PetscViewerASCIIPopTab(viewer));
@@ -387,22 +462,30 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscFunctionBegin;
   if (!ancf || !*ancf) PetscFunctionReturn(PETSC_SUCCESS);
   a = *ancf;
+  PetscCall(AncfGroupDestroy(a));
   PetscCall(AncfTSDestroy(a));
-  PetscCall(PetscFree6(a->e, a->v, a->a, a->load, a->weight, a->rest));
+  PetscCall(PetscFree7(a->e, a->v, a->a, a->load, a->weight, a->steady, a->rest));
   PetscCall(PetscFree2(a->fixed, a->mass));
   PetscCall(PetscFree(a->loadend));
+  PetscCall(PetscFree(a->permanent));
+  PetscCall(PetscFree(a->moment));
+  PetscCall(PetscFree3(a->motion, a->resta, a->restm));
+  PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));
+  PetscCall(PetscFree(a->lanebeams));
   PetscCall(PetscFree(a->beams));
   PetscCall(PetscFree(a->prefix));
   PetscCall(PetscFree(*ancf));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The TS that integrates the beams, for choices without an option of ours; borrowed. */
+/* The TS that integrates the beams (the first group's, see AncfSetGroupNodes()), for choices without an option of ours; borrowed.
+ */
 PetscErrorCode AncfGetTS(Ancf ancf, TS *ts)
 {
   PetscFunctionBegin;
+  ancf->exposed = PETSC_TRUE;
   *ts = ancf->ts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -456,14 +539,19 @@ PetscInt AncfFindBeam(Ancf ancf, PetscInt node)
 
 PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear)
 {
-  PetscInt s = 0, n = 0, l = 0;
+  PetscInt most[3] = {0}, n[3] = {0};
 
   PetscFunctionBegin;
-  PetscCall(TSGetStepNumber(ancf->ts, &s));
-  PetscCall(TSGetSNESIterations(ancf->ts, &n));
-  PetscCall(TSGetKSPIterations(ancf->ts, &l));
-  if (steps) *steps = s - ancf->uncounted[0];
-  if (newton) *newton = n - ancf->uncounted[1];
-  if (linear) *linear = l - ancf->uncounted[2];
+  for (PetscInt k = 0; k < PetscMax(1, ancf->ngroups); k++) {
+    Ancf g = ancf->ngroups ? ancf->groups[k] : ancf;
+
+    PetscCall(TSGetStepNumber(g->ts, &n[0]));
+    PetscCall(TSGetSNESIterations(g->ts, &n[1]));
+    PetscCall(TSGetKSPIterations(g->ts, &n[2]));
+    for (int i = 0; i < 3; i++) most[i] = PetscMax(most[i], n[i] - g->uncounted[i]);
+  }
+  if (steps) *steps = most[0];
+  if (newton) *newton = most[1];
+  if (linear) *linear = most[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,11 +38,15 @@ FROND_EXTERN PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf);
 FROND_EXTERN PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[]);
 FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
 FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
+/* Supports any node of a beam, before AncfSetUp(): ANCF_END_PIN or ANCF_END_CLAMP. */
+FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
 FROND_EXTERN PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3]);
 FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
 FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
 FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
+FROND_EXTERN PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping);
+FROND_EXTERN PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes);
 FROND_EXTERN PetscErrorCode AncfSetFromOptions(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfSetUp(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer);
@@ -66,6 +70,21 @@ FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
    call, and constant at these afterwards. Returned as a copy of the loads at the start. */
 FROND_EXTERN PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q);
 
+/* Permanent loads, in addition to Q^a; see ancfloads.c. s in [0,1]: fraction of the length; node: 0 is the beam's start. */
+FROND_EXTERN PetscErrorCode AncfAddPointLoad(Ancf ancf, PetscInt beam, PetscReal s, const PetscReal F[3]);
+FROND_EXTERN PetscErrorCode AncfAddLineLoad(Ancf ancf, PetscInt beam, const PetscReal q[3]);
+FROND_EXTERN PetscErrorCode AncfSetMoment(Ancf ancf, PetscInt beam, PetscInt node, const PetscReal M[3]);
+FROND_EXTERN PetscErrorCode AncfClearLoads(Ancf ancf);
+/* Centreline (m), axial force (N), curvature vector (1/m) and bending moment (N m) at the fraction s of a beam's length. */
+FROND_EXTERN PetscErrorCode AncfGetSection(Ancf ancf, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal *N,
+                                           PetscReal kappa[3], PetscReal M[3]);
+
+/* Motion of a supported node from now on, e + v tau + a tau^2/2, and the generalised force that the support exerts; ancfmotion.c.
+ */
+FROND_EXTERN PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const PetscReal e[6], const PetscReal v[6],
+                                              const PetscReal a[6]);
+FROND_EXTERN PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, PetscReal f[6]);
+
 /* Iterated coupling: AncfRestoreState() goes back to the time of AncfSaveState() as often as wanted, with the history of the
    integrator for one-step methods and alpha2 (a multistep method restarts). Loads are left alone. */
 FROND_EXTERN PetscErrorCode AncfSaveState(Ancf ancf);
@@ -83,18 +102,20 @@ FROND_EXTERN PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t);
    beams without enough supports. Options: -ancf_static_snes_..., -ancf_static_ksp_.... */
 FROND_EXTERN PetscErrorCode AncfSolveStatic(Ancf ancf, PetscInt loadsteps);
 
-/* Energies, J: kinetic, elastic (axial + bending), potential (-sum rho_s A g.r, buoyancy-reduced). */
+/* Energies, J: kinetic, elastic (axial + bending), potential (of gravity less buoyancy, -sum (rho_s A - rho A_outer) g.r, and of
+   permanent point and line loads). */
 FROND_EXTERN PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, PetscReal *potential);
 /* Total linear momentum (kg m/s) and angular momentum about the origin (kg m^2/s); either may be NULL. */
 FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3]);
 /* Force of the supports (clamped and pinned ends) on the beams, and of gravity less buoyancy, N. */
 FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
 FROND_EXTERN PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3]);
-/* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations. */
+/* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations; the largest over the groups of beams. */
 FROND_EXTERN PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear);
 
-/* Shape functions S1..S4 of Eq. 19 and their x-derivatives at xi in [0,1] of an element of length l (m). */
+/* Shape functions S1..S4 of Eq. 19, their first and second x-derivatives at xi in [0,1] of an element of length l (m). */
 FROND_EXTERN void AncfShape(PetscReal xi, PetscReal l, PetscReal S[4]);
 FROND_EXTERN void AncfShapeX(PetscReal xi, PetscReal l, PetscReal Sx[4]);
+FROND_EXTERN void AncfShapeXX(PetscReal xi, PetscReal l, PetscReal Sxx[4]);
 
 #endif

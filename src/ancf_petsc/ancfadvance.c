@@ -75,11 +75,11 @@ static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason
   SETERRQ(ancf->comm, PETSC_ERR_NOT_CONVERGED,
           "Newton failed (%s) at t = %g s even with the step reduced to %g s: largest residual %g N at beam %" PetscInt_FMT
           ", node %" PetscInt_FMT " of %" PetscInt_FMT "; use a smaller step (-ancf_substeps) or softer loads",
-          SNESConvergedReasons[why], (double)t, (double)dt, (double)size, b, node - ancf->beams[b].node,
+          SNESConvergedReasons[why], (double)t, (double)dt, (double)size, ancf->firstbeam + b, node - ancf->beams[b].node,
           ancf->beams[b].spec.elements + 1);
 }
 
-static PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
+PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
 {
   const PetscReal t0 = ancf->t;
   PetscReal dt = (t - t0) / (PetscReal)ancf->substeps;
@@ -120,6 +120,7 @@ static PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   if (reason < 0) PetscCall(AncfFail(ancf, t0, reason));
   PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));
   PetscCall(AncfTSPull(ancf));
+  PetscCall(AncfMoveState(ancf, t));
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
   if (ierr) PetscCall(AncfStateLoad(ancf, t0, ancf->backup));
@@ -146,7 +147,10 @@ PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t)
   PetscCall(AncfCheckFinite(ancf, "load", ancf->load, ancf->t));
   if (ancf->linear) PetscCall(AncfCheckFinite(ancf, "load", ancf->loadend, t));
   PetscCall(PetscLogEventBegin(ANCF_Advance, 0, 0, 0, 0));
-  PetscCall(AncfTSSolve(ancf, t));
+  if (ancf->ngroups)
+    PetscCall(AncfGroupSolve(ancf, t));
+  else
+    PetscCall(AncfTSSolve(ancf, t));
   PetscCall(PetscLogEventEnd(ANCF_Advance, 0, 0, 0, 0));
   ancf->avalid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -103,7 +103,7 @@ static PetscErrorCode AncfAlphaPostStep(TS ts)
 PetscErrorCode AncfAlphaSetUp(Ancf ancf)
 {
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(6 * ancf->nnodes, &ancf->history, 6 * ancf->nnodes, &ancf->vprev));
+  if (!ancf->history) PetscCall(PetscCalloc2(6 * ancf->nnodes, &ancf->history, 6 * ancf->nnodes, &ancf->vprev));
   PetscCall(TSSetApplicationContext(ancf->ts, ancf));
   PetscCall(TSSetPreStep(ancf->ts, AncfAlphaPreStep));
   PetscCall(TSSetPostStep(ancf->ts, AncfAlphaPostStep));

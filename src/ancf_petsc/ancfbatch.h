@@ -36,4 +36,29 @@ static inline AncfSection AncfBatchSection(const AncfBatch *b)
   return (AncfSection){AncfLoad(b->EA), AncfLoad(b->EI), AncfLoad(b->l)};
 }
 
+/* Node k of each lane's beam; lanes past their end stay as they are. */
+static inline void AncfGatherLane(const Ancf ancf, const AncfLaneBeams *b, PetscInt k, const PetscReal *x, PetscInt stride,
+                                  const PetscReal *fix, AncfLanes out[6])
+{
+  for (int i = 0; i < ANCF_LANES; i++) {
+    const PetscInt j = b->first[i] + k;
+    const PetscReal *xj = x + j * stride;
+    unsigned char f;
+
+    if (k > b->elements[i]) continue;
+    f = ancf->fixed[j];
+    for (int c = 0; c < 6; c++) out[c][i] = xj[c];
+    if (PetscUnlikely(f))
+      for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++) out[c][i] = fix ? fix[6 * j + c] : 0;
+  }
+}
+
+/* Lanes without an element k: no stiffness, no mass, and a straight element of unit length, so that nothing divides by zero. */
+static inline void AncfIdleLane(int i, AncfSection *s, AncfLanes *mass, AncfLanes e[12])
+{
+  s->EA[i] = s->EI[i] = (*mass)[i] = 0;
+  s->l[i] = 1;
+  for (int c = 0; c < 12; c++) e[c][i] = c == 3 || c == 6 || c == 9;
+}
+
 #endif

@@ -2,6 +2,14 @@
 #include "ancfelement.h"
 #include <petscdt.h>
 
+/* Symmetric 3 x 3 blocks are stored xx xy xz yy yz zz; the off-diagonal blocks are (0,1), (0,2), (1,2). */
+static const int sym_row[6] = {0, 0, 0, 1, 1, 2}, sym_col[6] = {0, 1, 2, 1, 2, 2};
+static const int sym_of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+static const int off_row[3] = {0, 0, 1}, off_col[3] = {1, 2, 2};
+
+/* Loops over the entries of 3 x 3 blocks, whose indices must be known to the compiler. */
+#define UNROLL _Pragma("GCC unroll 9")
+
 /* Eq. 19 */
 void AncfShape(PetscReal xi, PetscReal l, PetscReal S[4])
 {
@@ -20,6 +28,15 @@ void AncfShapeX(PetscReal xi, PetscReal l, PetscReal Sx[4])
   Sx[3] = xi * (3 * xi - 2);
 }
 
+/* d2/dx2 of Eq. 19 */
+void AncfShapeXX(PetscReal xi, PetscReal l, PetscReal Sxx[4])
+{
+  Sxx[0] = (12 * xi - 6) / (l * l);
+  Sxx[1] = (6 * xi - 4) / l;
+  Sxx[2] = -Sxx[0];
+  Sxx[3] = (6 * xi - 2) / l;
+}
+
 static PetscErrorCode AncfGaussSetUp(AncfGauss *g, PetscInt n)
 {
   PetscFunctionBegin;
@@ -36,6 +53,18 @@ static PetscErrorCode AncfGaussSetUp(AncfGauss *g, PetscInt n)
     g->s2[q][0] = 6 * x - 4;
     g->s2[q][1] = 6 - 12 * x;
     g->s2[q][2] = 6 * x - 2;
+    for (int i = 0; i < 3; i++) {
+      const PetscReal a = g->s1[q][i], b = g->s2[q][i];
+      const int r = off_row[i], c = off_col[i];
+
+      g->diag[i][q][0] = a * a;
+      g->diag[i][q][1] = a * b;
+      g->diag[i][q][2] = b * b;
+      g->off[i][q][0] = g->s1[q][r] * g->s1[q][c];
+      g->off[i][q][1] = g->s1[q][r] * g->s2[q][c];
+      g->off[i][q][2] = g->s2[q][r] * g->s1[q][c];
+      g->off[i][q][3] = g->s2[q][r] * g->s2[q][c];
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -171,106 +200,136 @@ void AncfElementForce(const AncfRule *rule, const AncfSection *s, const AncfLane
   if (U) *U = u;
 }
 
-static const int sym_row[6] = {0, 0, 0, 1, 1, 2}, sym_col[6] = {0, 1, 2, 1, 2, 2};
-static const int sym_of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-static const int off_row[3] = {0, 0, 1}, off_col[3] = {1, 2, 2};
+/* Second derivatives of the energy at one Gauss point, weights and powers of l included: A by r', r' (symmetric), B by r', r''
+   (full), C by r'', r'' (symmetric), and S = B + B^T. */
+typedef struct {
+  AncfLanes A[6], B[9], C[6], S[6];
+} PointBlocks;
 
-/* Axial points: EA (f' I + 2 f'' r' r'^T) S'_i S'_j, symmetric 3 x 3 for every pair (i,j). */
+/* Point k: adds its part of the force to q, and returns the blocks. */
+static inline void BendingPoint(const AncfRule *rule, const AncfSection *s, PetscInt k, AncfLanes d[3][3], AncfLanes il,
+                                AncfLanes q[3][3], PointBlocks *p)
+{
+  const PetscReal *s1 = rule->bending.s1[k], *s2 = rule->bending.s2[k];
+  const AncfLanes w = 0.5 * rule->bending.w[k] * s->EI, wA = w * il, wB = wA * il, wC = wB * il;
+  AncfLanes r1[3], r2[3], ip[2], b, c;
+  BendingInvariant v;
+
+  Derivative(d, s1, il, r1);
+  Derivative(d, s2, il * il, r2);
+  b = Dot(r1, r2);
+  c = Dot(r2, r2);
+  BendingGradient(rule->strain, Dot(r1, r1), b, c, ip, &v);
+  BendingHessian(rule->strain, b, c, ip, &v);
+  UNROLL
+  for (int m = 0; m < 3; m++) {
+    const AncfLanes g1 = w * (2.0 * v.a * r1[m] + v.b * r2[m]), g2 = wA * (v.b * r1[m] + 2.0 * v.c * r2[m]);
+
+    for (int i = 0; i < 3; i++) q[i][m] += s1[i] * g1 + s2[i] * g2;
+  }
+  const AncfLanes aaA = 4.0 * wA * v.aa, abA = 2.0 * wA * v.ab, bbA = wA * v.bb, abB = 2.0 * wB * v.ab, acB = 4.0 * wB * v.ac,
+                  bbB = wB * v.bb, bbC = wC * v.bb;
+
+  UNROLL
+  for (int m = 0; m < 6; m++) {
+    const int i = sym_row[m], j = sym_col[m];
+    const AncfLanes r11 = r1[i] * r1[j];
+
+    p->A[m] = aaA * r11 + abA * (r1[i] * r2[j] + r2[i] * r1[j]) + bbA * r2[i] * r2[j];
+    p->C[m] = bbC * r11;
+  }
+  UNROLL
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) p->B[3 * i + j] = abB * r1[i] * r1[j] + acB * r1[i] * r2[j] + bbB * r2[i] * r1[j];
+    p->A[sym_of[i][i]] += 2.0 * wA * v.a;
+    p->B[4 * i] += wB * v.b;
+    p->C[sym_of[i][i]] += 2.0 * wC * v.c;
+  }
+  UNROLL
+  for (int m = 0; m < 6; m++) p->S[m] = p->B[3 * sym_row[m] + sym_col[m]] + p->B[3 * sym_col[m] + sym_row[m]];
+}
+
+/* The same of the axial energy, EA (f' I + 2 f'' r' r'^T), added to A. */
+static inline void AxialPoint(const AncfRule *rule, const AncfSection *s, PetscInt k, AncfLanes d[3][3], AncfLanes il,
+                              AncfLanes q[3][3], AncfLanes A[6])
+{
+  const PetscReal *s1 = rule->axial.s1[k];
+  const AncfLanes w = rule->axial.w[k] * s->EA;
+  AncfLanes r1[3], f[3], n, t;
+
+  Derivative(d, s1, il, r1);
+  AxialInvariant(rule->strain, Dot(r1, r1), f);
+  n = w * f[1];
+  for (int c = 0; c < 3; c++) {
+    const AncfLanes nr = n * r1[c];
+
+    for (int i = 0; i < 3; i++) q[i][c] += s1[i] * nr;
+  }
+  t = 2.0 * w * il * f[2];
+  UNROLL
+  for (int m = 0; m < 6; m++) A[m] += t * r1[sym_row[m]] * r1[sym_col[m]];
+  for (int i = 0; i < 3; i++) A[sym_of[i][i]] += n * il;
+}
+
+/* K_ij += sum over points of S'_i S'_j A + S'_i S''_j B + S''_i S'_j B^T + S''_i S''_j C, one sum in registers at a time. */
+static inline __attribute__((always_inline)) void BlocksToTangent(const AncfGauss *g, const int n, const PointBlocks *p,
+                                                                  AncfLanes K[ANCF_TANGENT])
+{
+  UNROLL for (int m = 0; m < 6; m++) for (int i = 0; i < 3; i++)
+  {
+    AncfLanes k = {0};
+
+    UNROLL for (int q = 0; q < n; q++) k +=
+        g->diag[i][q][0] * p[q].A[m] + g->diag[i][q][1] * p[q].S[m] + g->diag[i][q][2] * p[q].C[m];
+    K[6 * i + m] = k;
+  }
+  UNROLL for (int m = 0; m < 9; m++) for (int t = 0; t < 3; t++)
+  {
+    const int sym = sym_of[m / 3][m % 3], mt = 3 * (m % 3) + m / 3;
+    AncfLanes k = {0};
+
+    UNROLL for (int q = 0; q < n; q++) k += g->off[t][q][0] * p[q].A[sym] + g->off[t][q][1] * p[q].B[m] +
+                                            g->off[t][q][2] * p[q].B[mt] + g->off[t][q][3] * p[q].C[sym];
+    K[18 + 9 * t + m] = k;
+  }
+}
+
+/* Axial points of their own: only S'_i S'_j A. */
 static inline void AxialTangent(const AncfRule *rule, const AncfSection *s, AncfLanes d[3][3], AncfLanes il, AncfLanes q[3][3],
                                 AncfLanes K[ANCF_TANGENT])
 {
-  const AncfGauss *g = &rule->axial;
-  AncfLanes off[3][6];
+  for (PetscInt k = 0; k < rule->axial.n; k++) {
+    const PetscReal *s1 = rule->axial.s1[k];
+    AncfLanes A[6] = {{0}};
 
-  for (int b = 0; b < 3; b++)
-    for (int m = 0; m < 6; m++) off[b][m] = (AncfLanes){0};
-  for (PetscInt k = 0; k < g->n; k++) {
-    AncfLanes r1[3], f[3], A[6], w = g->w[k] * s->EA, n;
-
-    Derivative(d, g->s1[k], il, r1);
-    AxialInvariant(rule->strain, Dot(r1, r1), f);
-    n = w * f[1];
-    for (int i = 0; i < 3; i++)
-      for (int c = 0; c < 3; c++) q[i][c] += g->s1[k][i] * n * r1[c];
-    for (int m = 0; m < 6; m++) {
-      A[m] = 2.0 * w * il * f[2] * r1[sym_row[m]] * r1[sym_col[m]];
-      if (sym_row[m] == sym_col[m]) A[m] += n * il;
-      for (int i = 0; i < 3; i++) K[6 * i + m] += g->s1[k][i] * g->s1[k][i] * A[m];
-      for (int b = 0; b < 3; b++) off[b][m] += g->s1[k][off_row[b]] * g->s1[k][off_col[b]] * A[m];
-    }
-  }
-  for (int b = 0; b < 3; b++)
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) K[18 + 9 * b + 3 * i + j] += off[b][sym_of[i][j]];
-}
-
-/* Second derivatives of the bending energy at one point by r', r'': A = d2/dr'dr', B = d2/dr'dr'', C = d2/dr''dr''. */
-static inline void BendingBlocks(const BendingInvariant *v, AncfLanes w, AncfLanes il, const AncfLanes r1[3],
-                                 const AncfLanes r2[3], AncfLanes A[9], AncfLanes B[9], AncfLanes C[9])
-{
-  AncfLanes wA = w * il, wB = wA * il, wC = wB * il;
-
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      AncfLanes r11 = r1[i] * r1[j], r12 = r1[i] * r2[j], r21 = r2[i] * r1[j], r22 = r2[i] * r2[j];
-
-      A[3 * i + j] = wA * (4.0 * v->aa * r11 + 2.0 * v->ab * (r12 + r21) + v->bb * r22 + (i == j ? 2.0 * v->a : 0.0 * wA));
-      B[3 * i + j] = wB * (2.0 * v->ab * r11 + 4.0 * v->ac * r12 + v->bb * r21 + (i == j ? v->b : 0.0 * wA));
-      C[3 * i + j] = wC * (v->bb * r11 + (i == j ? 2.0 * v->c : 0.0 * wA));
-    }
-}
-
-static inline void BendingTangent(const AncfRule *rule, const AncfSection *s, AncfLanes d[3][3], AncfLanes il, AncfLanes q[3][3],
-                                  AncfLanes K[ANCF_TANGENT])
-{
-  const AncfGauss *g = &rule->bending;
-
-  for (PetscInt k = 0; k < g->n; k++) {
-    const PetscReal *s1 = g->s1[k], *s2 = g->s2[k];
-    AncfLanes r1[3], r2[3], ip[2], A[9], B[9], C[9], w = 0.5 * g->w[k] * s->EI, b, c;
-    BendingInvariant v;
-
-    Derivative(d, s1, il, r1);
-    Derivative(d, s2, il * il, r2);
-    b = Dot(r1, r2);
-    c = Dot(r2, r2);
-    BendingGradient(rule->strain, Dot(r1, r1), b, c, ip, &v);
-    BendingHessian(rule->strain, b, c, ip, &v);
-    for (int m = 0; m < 3; m++) {
-      AncfLanes g1 = w * (2.0 * v.a * r1[m] + v.b * r2[m]);
-      AncfLanes g2 = w * (v.b * r1[m] + 2.0 * v.c * r2[m]) * il;
-
-      for (int i = 0; i < 3; i++) q[i][m] += s1[i] * g1 + s2[i] * g2;
-    }
-    BendingBlocks(&v, w, il, r1, r2, A, B, C);
-    for (int j = 0; j < 3; j++) {
-      AncfLanes T1[9], T2[9]; /* K_ij = S'_i T1_j + S''_i T2_j */
-
-      for (int m = 0; m < 9; m++) {
-        T1[m] = s1[j] * A[m] + s2[j] * B[m];
-        T2[m] = s1[j] * B[3 * (m % 3) + m / 3] + s2[j] * C[m];
-      }
-      for (int m = 0; m < 6; m++) {
-        int o = 3 * sym_row[m] + sym_col[m];
-        K[6 * j + m] += s1[j] * T1[o] + s2[j] * T2[o];
-      }
-      for (int i = 0; i < j; i++)
-        for (int m = 0; m < 9; m++) K[18 + 9 * (i + j - 1) + m] += s1[i] * T1[m] + s2[i] * T2[m];
-    }
+    AxialPoint(rule, s, k, d, il, q, A);
+    for (int m = 0; m < 6; m++)
+      for (int i = 0; i < 3; i++) K[6 * i + m] += s1[i] * s1[i] * A[m];
+    for (int t = 0; t < 3; t++)
+      for (int m = 0; m < 9; m++) K[18 + 9 * t + m] += s1[off_row[t]] * s1[off_col[t]] * A[sym_of[m / 3][m % 3]];
   }
 }
 
 void AncfElementTangent(const AncfRule *rule, const AncfSection *s, const AncfLanes e[12], AncfLanes Q[12],
                         AncfLanes K[ANCF_TANGENT])
 {
-  AncfLanes d[3][3], q[3][3], il = 1.0 / s->l, l = s->l, l2 = l * l;
+  const PetscInt n = rule->bending.n;
+  const AncfLanes il = 1.0 / s->l, l = s->l, l2 = l * l;
+  AncfLanes d[3][3], q[3][3];
+  PointBlocks p[ANCF_MAX_GAUSS];
 
   Scaled(e, l, d);
   for (int i = 0; i < 3; i++)
     for (int c = 0; c < 3; c++) q[i][c] = (AncfLanes){0};
-  for (int m = 0; m < ANCF_TANGENT; m++) K[m] = (AncfLanes){0};
-  AxialTangent(rule, s, d, il, q, K);
-  BendingTangent(rule, s, d, il, q, K);
+  for (PetscInt k = 0; k < n; k++) {
+    BendingPoint(rule, s, k, d, il, q, &p[k]);
+    if (rule->axial.n == n) AxialPoint(rule, s, k, d, il, q, p[k].A); /* the same points: one sum */
+  }
+  if (n == 3)
+    BlocksToTangent(&rule->bending, 3, p, K);
+  else
+    BlocksToTangent(&rule->bending, (int)n, p, K);
+  if (rule->axial.n != n) AxialTangent(rule, s, d, il, q, K);
   ForceExpand(q, l, Q);
   for (int m = 0; m < 6; m++) {
     K[m] *= l2;

@@ -22,8 +22,9 @@ typedef PetscReal AncfLanes __attribute__((vector_size(ANCF_LANES * sizeof(Petsc
 typedef struct {
   PetscInt n;
   PetscReal xi[ANCF_MAX_GAUSS], w[ANCF_MAX_GAUSS];
-  PetscReal s1[ANCF_MAX_GAUSS][3]; /* dS/dxi   of l r_0,x, r_1, l r_1,x */
-  PetscReal s2[ANCF_MAX_GAUSS][3]; /* d2S/dxi2 */
+  PetscReal s1[ANCF_MAX_GAUSS][3];                                 /* dS/dxi   of l r_0,x, r_1, l r_1,x */
+  PetscReal s2[ANCF_MAX_GAUSS][3];                                 /* d2S/dxi2 */
+  PetscReal diag[3][ANCF_MAX_GAUSS][3], off[3][ANCF_MAX_GAUSS][4]; /* products S'S', S'S'', S''S' of the tangent's blocks */
 } AncfGauss;
 
 typedef struct {

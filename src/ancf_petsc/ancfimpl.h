@@ -12,7 +12,12 @@ typedef enum {
   ANCF_FORM_SYMPLECTIC /* edot = v, vdot = a(e), split for TSBASICSYMPLECTIC */
 } AncfForm;
 
-enum { ANCF_FIX_POSITION = 1, ANCF_FIX_GRADIENT = 2 };
+enum { ANCF_FIX_POSITION = 1, ANCF_FIX_GRADIENT = 2, ANCF_MOVING = 4 };
+
+typedef struct {
+  PetscInt beam, node;
+  AncfEnd how;
+} AncfSupport;
 
 typedef struct {
   AncfBeamSpec spec;
@@ -26,30 +31,48 @@ typedef struct {
   PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
 } AncfBatch;
 
+/* Up to ANCF_LANES beams, one per lane, longest first; unused lanes have no elements. */
+typedef struct {
+  PetscInt first[ANCF_LANES], elements[ANCF_LANES], most, least;
+  PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
+} AncfLaneBeams;
+
 struct _p_Ancf {
   MPI_Comm comm;
   char *prefix;
   PetscInt nbeams, maxbeams, nnodes, nelements, nbatches;
   AncfBeam *beams;
-  AncfBatch *batches;
+  AncfBatch *batches;       /* elements in lanes: everything, for few beams */
+  AncfLaneBeams *lanebeams; /* beams in lanes: the residual of many beams; NULL for few */
+  PetscInt nlanebeams;
   AncfStrain strain;
   PetscInt naxial, nbending, substeps;
   AncfRule rule;
-  PetscReal gravity[3], fluiddensity;
+  PetscReal gravity[3], fluiddensity, damping;
+  PetscReal *damped; /* a + damping v, nodes x 6 */
   PetscBool setup;
   AncfForm form;
+  PetscBool fromoptions, exposed; /* AncfSetFromOptions() and AncfGetTS() were called */
+  Ancf whole, *groups;            /* see ancfgroup.c; whole is NULL but in a group */
+  PetscInt ngroups, groupnodes, firstbeam;
 
   PetscReal t;
   PetscReal *e, *v, *a; /* state, nodes x 6 */
   PetscBool avalid;
   PetscReal loadscale;            /* of Q^a and Q^g; 1 but for the load steps of AncfSolveStatic() */
   PetscReal *load, *weight;       /* Q^a, Q^g */
+  PetscReal *permanent, *moment;  /* point and line loads, nodes x 6; moments, nodes x 3; NULL until used */
+  PetscReal *steady;              /* weight + permanent */
   PetscReal *loadend;             /* Q^a at loadtime[1], NULL until asked for */
   PetscBool linear;               /* Q^a goes from load to loadend between the two times, s */
   PetscReal loadtime[2], loadnow; /* loadnow: where the residual is evaluated, 0..1 */
-  PetscReal *rest;                /* values of the eliminated coordinates */
-  unsigned char *fixed;           /* per node, ANCF_FIX_* */
-  PetscReal *mass;                /* banded Cholesky factor, 2 rows per node x 4 */
+  PetscReal *rest, *resta;        /* eliminated coordinates and their accelerations; resta is NULL while none moves */
+  PetscReal *restm;               /* resta + damping times their velocities */
+  PetscReal *motion, motiontime;  /* e, v, a of moving nodes at that time, nodes x 18; NULL while none moves */
+  AncfSupport *supports;
+  PetscInt nsupports, maxsupports;
+  unsigned char *fixed; /* per node, ANCF_FIX_* */
+  PetscReal *mass;      /* banded Cholesky factor, 2 rows per node x 4 */
 
   TS ts;
   Vec U, V;
@@ -69,6 +92,7 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 #define ANCF_DEFAULT_AXIAL 3
 #define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
+#define ANCF_DEFAULT_GROUP 1000 /* nodes; 1 kB each in the vectors of TSALPHA2: fits a level-2 cache */
 
 #if defined(PETSC_UNLIMITED)
   #define ANCF_UNLIMITED PETSC_UNLIMITED
@@ -84,20 +108,36 @@ extern PetscErrorCode AncfStateLoad(Ancf ancf, PetscReal t, const PetscReal *x);
 /* Loads at time t of the step. */
 extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
 
-/* ancf.c */
+/* ancfmotion.c: prescribed coordinates at time t; MoveState also in the state and the vectors of TS. */
+extern void AncfMove(Ancf ancf, PetscReal t);
+extern PetscErrorCode AncfMoveState(Ancf ancf, PetscReal t);
+
+/* ancfloads.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
+extern void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscReal Q[3], PetscReal dQ[9]);
+
+/* ancf.c */
+extern PetscErrorCode AncfSetUpBatches(Ancf ancf);
+extern PetscErrorCode AncfSetUpLaneBeams(Ancf ancf);
+extern PetscErrorCode AncfPrefixTS(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
 
 /* ancfts.c: Push and Pull copy the state into and out of the vectors of TS; Push makes TS restart. */
 extern PetscErrorCode AncfTSCreate(Ancf ancf);
 extern PetscErrorCode AncfTSDestroy(Ancf ancf);
+extern PetscErrorCode AncfChooseForm(Ancf ancf);
 extern PetscErrorCode AncfTSSetUp(Ancf ancf);
 extern PetscErrorCode AncfTSPush(Ancf ancf);
 extern PetscErrorCode AncfTSPull(Ancf ancf);
+extern PetscErrorCode AncfTSCopy(Ancf ancf);  /* first-order forms: state -> vector, without a restart */
 extern PetscErrorCode AncfTSTouch(Ancf ancf); /* second-order form: U and V wrap e and v, say that these changed */
 /* f = M a + Q^e(e) - Q^g - Q^a; a may be NULL. Arrays are nodes x 6 with the given strides between nodes. */
-extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f,
-                                   PetscInt fstride);
+extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride,
+                                   PetscReal *f, PetscInt fstride);
+/* a = M^-1 (Q^g + Q^a - Q^e - C v), v may be NULL, prescribed values in eliminated rows. */
+extern PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
+                                               PetscInt astride);
+extern PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f);
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 
@@ -106,10 +146,17 @@ extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P);
 extern PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P);
 extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J);
-/* Rows of eliminated coordinates: f = x, or 0 when x is NULL. */
+/* Rows of eliminated coordinates: f = x - prescribed acceleration; x NULL: f = that acceleration. */
 extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
 
+/* ancfgroup.c */
+extern PetscErrorCode AncfGroupSetUp(Ancf ancf);
+extern PetscErrorCode AncfGroupDestroy(Ancf ancf);
+extern PetscErrorCode AncfGroupPush(Ancf ancf);
+extern PetscErrorCode AncfGroupSolve(Ancf ancf, PetscReal t);
+
 /* ancfadvance.c */
+extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
 
 /* ancfalpha.c */

@@ -100,13 +100,8 @@ PetscErrorCode AncfComputeAcceleration(Ancf ancf)
 {
   PetscFunctionBegin;
   if (ancf->avalid) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AncfResidual(ancf, ancf->e, NULL, 6, ancf->a, 6));
-  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) ancf->a[i] = -ancf->a[i];
-  for (PetscInt j = 0; j < ancf->nnodes; j++) {
-    if (ancf->fixed[j] & ANCF_FIX_POSITION) PetscCall(PetscArrayzero(ancf->a + 6 * j, 3));
-    if (ancf->fixed[j] & ANCF_FIX_GRADIENT) PetscCall(PetscArrayzero(ancf->a + 6 * j + 3, 3));
-  }
-  PetscCall(AncfMassSolve(ancf, ancf->a, 6));
+  AncfMove(ancf, ancf->t);
+  PetscCall(AncfExplicitAcceleration(ancf, ancf->e, ancf->v, 6, ancf->a, 6));
   ancf->avalid = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,7 +116,7 @@ PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, 
   PetscCall(AncfMassMult(ancf, ancf->v, f));
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     T += 0.5 * f[i] * ancf->v[i];
-    P -= ancf->weight[i] * ancf->e[i];
+    P -= ancf->steady[i] * ancf->e[i];
   }
   PetscCall(PetscFree(f));
   if (elastic) PetscCall(AncfElasticEnergy(ancf, &W));
@@ -163,9 +158,8 @@ PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3])
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetReaction: call AncfSetUp() first");
-  PetscCall(AncfComputeAcceleration(ancf));
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
-  PetscCall(AncfResidual(ancf, ancf->e, ancf->a, 6, r, 6));
+  PetscCall(AncfSupportForces(ancf, r));
   f[0] = f[1] = f[2] = 0;
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     if (ancf->fixed[j] & ANCF_FIX_POSITION)

@@ -79,6 +79,28 @@ static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tangent of the moments, which are not conservative and make it unsymmetric unless all bending is in one plane. */
+static PetscErrorCode AncfAssembleMoments(Ancf ancf, const PetscReal *e, PetscInt stride, Mat P)
+{
+  PetscReal blk[144];
+  PetscInt bs;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetBlockSize(P, &bs));
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
+    const PetscReal *M = ancf->moment + 3 * j;
+    PetscReal Q[3], dQ[9];
+
+    if (ancf->fixed[j] & ANCF_FIX_GRADIENT || (M[0] == 0 && M[1] == 0 && M[2] == 0)) continue;
+    AncfMomentForce(M, e + j * stride + 3, Q, dQ);
+    PetscCall(PetscArrayzero(blk, 144));
+    for (int r = 0; r < 3; r++)
+      for (int c = 0; c < 3; c++) blk[bs * (bs - 3 + r) + 3 + c] = -ancf->loadscale * dQ[3 * r + c];
+    PetscCall(MatSetValuesBlocked(P, 1, &j, 1, &j, blk, ADD_VALUES));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
 static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
 {
@@ -120,6 +142,7 @@ PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, Pets
   } else {
     PetscCall(MatZeroEntries(P));
     PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
+    PetscCall(AncfAssembleMoments(ancf, e, stride, P));
     PetscCall(AncfAssembleNodes(ancf, diag, P));
   }
   PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
@@ -183,27 +206,26 @@ static inline void ShellAdd(const AncfLanes K[ANCF_TANGENT], AncfLanes mass, Anc
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       const AncfLanes aa = K[sym[i][j]], bb = K[6 + sym[i][j]], cc = K[12 + sym[i][j]];
-      const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j],
-                      cb = K[36 + 3 * j + i];
+      const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j];
 
-      D0[6 * i + j] += bb;
       D0[6 * i + 3 + j] -= ba;
-      D0[6 * (3 + i) + j] -= ab;
-      D0[6 * (3 + i) + 3 + j] += aa;
       U[6 * i + j] = -bb;
       U[6 * i + 3 + j] = -bc;
       U[6 * (3 + i) + j] = ab;
       U[6 * (3 + i) + 3 + j] = ac;
-      D1[6 * i + j] = bb;
       D1[6 * i + 3 + j] = bc;
-      D1[6 * (3 + i) + j] = cb;
+      if (j < i) continue; /* the lower triangles are not read */
+      D0[6 * i + j] += bb;
+      D0[6 * (3 + i) + 3 + j] += aa;
+      D1[6 * i + j] = bb;
       D1[6 * (3 + i) + 3 + j] = cc;
     }
   for (int c = 0; c < 3; c++)
     for (int i = 0; i < 2; i++)
       for (int j = 0; j < 2; j++) {
-        D0[6 * (3 * i + c) + 3 * j + c] += m[i][j];
         U[6 * (3 * i + c) + 3 * j + c] += m[i][2 + j];
+        if (j < i) continue;
+        D0[6 * (3 * i + c) + 3 * j + c] += m[i][j];
         D1[6 * (3 * i + c) + 3 * j + c] += m[2 + i][2 + j];
       }
 }
@@ -228,6 +250,23 @@ static void ShellFix(const AncfShell *s, const PetscInt chain[ANCF_LANES], Petsc
     }
 }
 
+/* The symmetric part of the tangent of the moments: Newton's method corrects the rest. */
+static void ShellMoments(const AncfShell *s, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D)
+{
+  for (int i = 0; i < ANCF_LANES; i++)
+    for (PetscInt k = 0; k < nrows; k++) {
+      const PetscInt j = chain[i] < 0 || k >= s->length[chain[i]] ? -1 : s->first[chain[i]] + k;
+      const PetscReal *M = j < 0 ? NULL : s->ancf->moment + 3 * j;
+      PetscReal Q[3], dQ[9];
+
+      if (!M || (M[0] == 0 && M[1] == 0 && M[2] == 0)) continue;
+      AncfMomentForce(M, s->e + 6 * j + 3, Q, dQ);
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+          D[36 * k + 6 * (3 + r) + 3 + c][i] -= 0.5 * s->ancf->loadscale * (dQ[3 * r + c] + dQ[3 * c + r]);
+    }
+}
+
 static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D, AncfLanes *U)
 {
   const AncfShell *s = (const AncfShell *)ctx;
@@ -247,20 +286,24 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
     AncfSection sec = {zero, zero, one};
     AncfLanes mass = zero, Q[12], K[ANCF_TANGENT];
 
+    ShellNode(s, chain, k + 1, e + 6);
     for (int i = 0; i < ANCF_LANES; i++) {
       const AncfBeam *b = &s->ancf->beams[chain[i] < 0 ? 0 : chain[i]];
 
-      if (chain[i] < 0 || k >= b->spec.elements) continue;
+      if (chain[i] < 0 || k >= b->spec.elements) {
+        AncfIdleLane(i, &sec, &mass, e);
+        continue;
+      }
       sec.EA[i] = b->EA;
       sec.EI[i] = b->EI;
       sec.l[i] = b->l;
       mass[i] = s->shift * b->rhoA * b->l;
     }
-    ShellNode(s, chain, k + 1, e + 6);
     AncfElementTangent(&s->ancf->rule, &sec, e, Q, K);
     ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];
   }
+  if (s->ancf->moment) ShellMoments(s, chain, nrows, D);
   ShellFix(s, chain, nrows, D, U);
 }
 
@@ -290,6 +333,12 @@ static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
       for (int r = 0; r < 12; r++)
         for (int c = 0; c < 12; c++) y[6 * b->node[i] + r] += k[12 * r + c] * x[6 * b->node[i] + c];
     }
+  }
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment && !s->identity; j++) {
+    PetscReal Q[3], dQ[9];
+
+    AncfMomentForce(ancf->moment + 3 * j, s->e + 6 * j + 3, Q, dQ);
+    for (int r = 0; r < 9; r++) y[6 * j + 3 + r / 3] -= ancf->loadscale * dQ[r] * x[6 * j + 3 + r % 3];
   }
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (int c = 0; c < 6; c++)
@@ -371,17 +420,24 @@ static PetscErrorCode AncfCreateStored(Ancf ancf, PetscInt bs, Mat *J)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Matrix for this preconditioner: unassembled for PCBLOCKTRI unless -ancf_mat_type is given, else MATSEQBAIJ by default. */
+/*
+  Matrix for this preconditioner: unassembled for PCBLOCKTRI, else MATSEQBAIJ by default. Unless told otherwise, a set of enough
+  beams to fill half the vector lanes takes PCBLOCKTRI, a smaller one the block ILU(0), exact for these matrices.
+*/
 PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J)
 {
-  PetscBool blocktri, given;
-  char key[256];
+  PetscBool blocktri, mat, given;
+  char prefix[256];
 
   PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%sancf_", ancf->prefix ? ancf->prefix : ""));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-mat_type", &mat));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-pc_type", &given));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &blocktri));
+  if (blocktri && !given && !mat && !ancf->exposed && bs == 6 && 2 * ancf->nbeams >= ANCF_LANES)
+    PetscCall(PCSetType(pc, PCBLOCKTRI));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBLOCKTRI, &blocktri));
-  PetscCall(PetscSNPrintf(key, sizeof(key), "-%sancf_mat_type", ancf->prefix ? ancf->prefix : ""));
-  PetscCall(PetscOptionsHasName(NULL, NULL, key, &given));
-  if (blocktri && bs == 6 && !given)
+  if (blocktri && bs == 6 && !mat)
     PetscCall(AncfCreateShell(ancf, J));
   else
     PetscCall(AncfCreateStored(ancf, bs, J));

@@ -4,15 +4,19 @@
 /* PETSC_ERR_FP with beam, node and time when an array of nodes x 6 holds a NaN or an infinity. */
 PetscErrorCode AncfCheckFinite(Ancf ancf, const char what[], const PetscReal *x, PetscReal t)
 {
+  PetscReal sum = 0;
+
   PetscFunctionBegin;
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) sum += 0 * x[i]; /* NaN if any is not finite */
+  if (PetscLikely(sum == 0)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     PetscInt b;
 
     if (PetscLikely(!PetscIsInfOrNanReal(x[i]))) continue;
     b = AncfFindBeam(ancf, i / 6);
     SETERRQ(ancf->comm, PETSC_ERR_FP,
-            "Beam %" PetscInt_FMT ", node %" PetscInt_FMT ": %s coordinate %" PetscInt_FMT " is %g at t = %g s", b,
-            i / 6 - ancf->beams[b].node, what, i % 6, (double)x[i], (double)t);
+            "Beam %" PetscInt_FMT ", node %" PetscInt_FMT ": %s coordinate %" PetscInt_FMT " is %g at t = %g s",
+            ancf->firstbeam + b, i / 6 - ancf->beams[b].node, what, i % 6, (double)x[i], (double)t);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,7 +107,7 @@ PetscErrorCode AncfSetHistory(Ancf ancf, const PetscReal *A)
 
 /*
   AncfSetState - replaces time, coordinates and velocities (nodes x 6 each); multistep history is discarded.
-  Fixed coordinates keep their new values from now on; their velocities must be zero.
+  Fixed coordinates keep their new values from now on; their velocities must be zero unless the node moves.
 */
 PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const PetscReal *edot)
 {
@@ -115,15 +119,21 @@ PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const Pe
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     PetscInt b = AncfFindBeam(ancf, i / 6);
 
-    PetscCheck(edot[i] == 0 || !(ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)), ancf->comm,
-               PETSC_ERR_ARG_INCOMP,
+    PetscCheck(edot[i] == 0 || ancf->fixed[i / 6] & ANCF_MOVING ||
+                   !(ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)),
+               ancf->comm, PETSC_ERR_ARG_INCOMP,
                "AncfSetState: beam %" PetscInt_FMT ", node %" PetscInt_FMT ": velocity %g of a fixed coordinate must be zero", b,
                i / 6 - ancf->beams[b].node, (double)edot[i]);
   }
   if (e != ancf->e) PetscCall(PetscArraycpy(ancf->e, e, 6 * ancf->nnodes));
   if (edot != ancf->v) PetscCall(PetscArraycpy(ancf->v, edot, 6 * ancf->nnodes));
   PetscCall(PetscArraycpy(ancf->rest, e, 6 * ancf->nnodes));
-  ancf->t = t;
+  for (PetscInt i = 0; i < 6 * ancf->nnodes && ancf->motion; i++) {
+    ancf->motion[18 * (i / 6) + i % 6] = e[i];
+    ancf->motion[18 * (i / 6) + 6 + i % 6] = edot[i];
+  }
+  ancf->t = ancf->motiontime = t;
+  for (PetscInt k = 0; k < ancf->ngroups; k++) ancf->groups[k]->motiontime = t;
   ancf->avalid = PETSC_FALSE;
   PetscCall(AncfTSPush(ancf));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -166,5 +176,6 @@ PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q)
 
 void AncfSetLoadTime(Ancf ancf, PetscReal t)
 {
+  AncfMove(ancf, t);
   ancf->loadnow = ancf->linear ? (t - ancf->loadtime[0]) / (ancf->loadtime[1] - ancf->loadtime[0]) : 0;
 }

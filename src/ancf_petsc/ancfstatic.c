@@ -11,8 +11,9 @@ static PetscErrorCode StaticFunction(SNES snes, Vec X, Vec F, void *ctx)
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfResidual(ancf, x, NULL, 6, f, 6));
-  AncfFixRows(ancf, NULL, 0, f, 6);
+  PetscCall(AncfResidual(ancf, x, 6, NULL, 0, f, 6));
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++)
+    if (ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[i] = x[i] - ancf->rest[i];
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -44,18 +44,10 @@ PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, PetscInt stride, PetscReal *f, PetscInt fstride)
+/* Elements in lanes; f holds minus the loads already. */
+static void ResidualElements(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                             PetscInt fstride)
 {
-  const PetscReal scale = ancf->loadscale;
-
-  PetscFunctionBegin;
-  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
-  for (PetscInt j = 0; j < ancf->nnodes; j++)
-    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->weight[6 * j + c] + ancf->load[6 * j + c]);
-  if (ancf->loadnow != 0)
-    for (PetscInt j = 0; j < ancf->nnodes; j++)
-      for (PetscInt c = 0; c < 6; c++)
-        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
   for (PetscInt k = 0; k < ancf->nbatches; k++) {
     const AncfBatch *b = &ancf->batches[k];
     AncfSection s = AncfBatchSection(b);
@@ -64,7 +56,7 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
     AncfGather(ancf, b, e, stride, ancf->rest, x);
     AncfElementForce(&ancf->rule, &s, x, Q, NULL);
     if (a) {
-      AncfGather(ancf, b, a, stride, NULL, x);
+      AncfGather(ancf, b, a, astride, ancf->restm, x);
       AncfElementInertia(AncfLoad(b->rhoA), s.l, x, Q);
     }
     for (PetscInt i = 0; i < b->n; i++) {
@@ -74,43 +66,139 @@ PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, const PetscReal *a, P
       for (int c = 0; c < 6; c++) fj[fstride + c] += Q[6 + c][i];
     }
   }
+}
+
+/* Beams in lanes: each node is read and written once. */
+static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e, PetscInt stride, const PetscReal *a,
+                          PetscInt astride, PetscReal *f, PetscInt fstride)
+{
+  const AncfSection full = {AncfLoad(b->EA), AncfLoad(b->EI), AncfLoad(b->l)};
+  AncfLanes x[12], y[12], left[6];
+
+  for (int c = 0; c < 12; c++) x[c] = y[c] = (AncfLanes){0};
+  for (int c = 0; c < 6; c++) left[c] = (AncfLanes){0};
+  AncfGatherLane(ancf, b, 0, e, stride, ancf->rest, x);
+  if (a) AncfGatherLane(ancf, b, 0, a, astride, ancf->restm, y);
+  for (PetscInt k = 0; k <= b->most; k++) {
+    AncfLanes Q[12], mass = AncfLoad(b->rhoA);
+    AncfSection s = full;
+
+    if (k < b->most) {
+      AncfGatherLane(ancf, b, k + 1, e, stride, ancf->rest, x + 6);
+      for (int i = 0; i < ANCF_LANES && k >= b->least; i++)
+        if (k >= b->elements[i]) AncfIdleLane(i, &s, &mass, x);
+      AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+      if (a) {
+        AncfGatherLane(ancf, b, k + 1, a, astride, ancf->restm, y + 6);
+        AncfElementInertia(mass, s.l, y, Q);
+      }
+    } else
+      for (int c = 0; c < 12; c++) Q[c] = (AncfLanes){0};
+    for (int c = 0; c < 6; c++) {
+      Q[c] += left[c];
+      left[c] = Q[6 + c];
+      x[c] = x[6 + c];
+      y[c] = y[6 + c];
+    }
+    for (int i = 0; i < ANCF_LANES; i++)
+      if (k <= b->elements[i])
+        for (int c = 0; c < 6; c++) f[(b->first[i] + k) * fstride + c] += Q[c][i];
+  }
+}
+
+PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                            PetscInt fstride)
+{
+  const PetscReal scale = ancf->loadscale;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->steady[6 * j + c] + ancf->load[6 * j + c]);
+  if (ancf->loadnow != 0)
+    for (PetscInt j = 0; j < ancf->nnodes; j++)
+      for (PetscInt c = 0; c < 6; c++)
+        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
+  if (ancf->lanebeams)
+    for (PetscInt k = 0; k < ancf->nlanebeams; k++) ResidualBeams(ancf, &ancf->lanebeams[k], e, stride, a, astride, f, fstride);
+  else
+    ResidualElements(ancf, e, stride, a, astride, f, fstride);
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
+    const PetscReal *M = ancf->moment + 3 * j;
+    PetscReal Q[3];
+
+    if (M[0] == 0 && M[1] == 0 && M[2] == 0) continue;
+    AncfMomentForce(M, ancf->fixed[j] & ANCF_FIX_GRADIENT ? ancf->rest + 6 * j + 3 : e + j * stride + 3, Q, NULL);
+    for (int c = 0; c < 3; c++) f[j * fstride + 3 + c] -= scale * Q[c];
+  }
   PetscCall(PetscLogEventEnd(ANCF_Force, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of eliminated coordinates: f = x; x NULL: f = 0. */
 void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
 {
   for (PetscInt j = 0; j < ancf->nnodes; j++) {
-    unsigned char fix = ancf->fixed[j];
+    const unsigned char fix = ancf->fixed[j];
 
-    for (int c = 0; c < 6; c++)
-      if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] : 0;
+    if (PetscLikely(!fix)) continue;
+    for (int c = 0; c < 6; c++) {
+      const PetscReal a = ancf->resta ? ancf->resta[6 * j + c] : 0;
+
+      if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] - a : a;
+    }
   }
 }
 
-/* F = M a + Q^e - Q^g - Q^a */
+/* Mass-proportional damping, C = damping M, enters as the acceleration a + damping v; returns a itself without damping. */
+static const PetscReal *AncfDamped(Ancf ancf, const PetscReal *v, const PetscReal *a, PetscInt stride, PetscInt *outstride)
+{
+  *outstride = stride;
+  if (ancf->damping == 0) return a;
+  *outstride = 6;
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) ancf->damped[6 * j + c] = a[j * stride + c] + ancf->damping * v[j * stride + c];
+  return ancf->damped;
+}
+
+/* The full equations of motion at the current state, constraints ignored: what the supports must supply. */
+PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f)
+{
+  const PetscReal *a;
+  PetscInt stride;
+
+  PetscFunctionBegin;
+  PetscCall(AncfComputeAcceleration(ancf));
+  a = AncfDamped(ancf, ancf->v, ancf->a, 6, &stride);
+  PetscCall(AncfResidual(ancf, ancf->e, 6, a, stride, f, 6));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F = M a + C v + Q^e - Q^g - Q^a */
 static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
 {
   Ancf ancf = (Ancf)ctx;
-  const PetscScalar *u, *a;
+  const PetscScalar *u, *v, *a;
   PetscScalar *f;
 
   PetscFunctionBegin;
   (void)ts;
   AncfSetLoadTime((Ancf)ctx, t);
-  (void)V;
   PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(VecGetArrayRead(V, &v));
   PetscCall(VecGetArrayRead(A, &a));
   PetscCall(VecGetArrayWrite(F, &f));
   if (ancf->priming)
     PetscCall(AncfAlphaFunction(ancf, a, f));
   else {
-    PetscCall(AncfResidual(ancf, u, a, 6, f, 6));
+    PetscInt stride;
+    const PetscReal *m = AncfDamped(ancf, v, a, 6, &stride);
+
+    PetscCall(AncfResidual(ancf, u, 6, m, stride, f, 6));
     AncfFixRows(ancf, a, 6, f, 6);
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(A, &a));
+  PetscCall(VecRestoreArrayRead(V, &v));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -125,22 +213,23 @@ static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, Pe
   (void)t;
   (void)V;
   (void)A;
-  (void)shiftV;
   PetscCall(VecGetArrayRead(U, &u));
   if (((Ancf)ctx)->priming)
     PetscCall(AncfAssembleIdentity((Ancf)ctx, shiftA, P));
   else
-    PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA, shiftA, J, P));
+    PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA + ((Ancf)ctx)->damping * shiftV, shiftA, J, P));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F = (edot - v, M vdot + Q^e - Q^g - Q^a), y = (e, v) node by node */
+/* F = (edot - v, M vdot + C v + Q^e - Q^g - Q^a), y = (e, v) node by node */
 static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, void *ctx)
 {
   Ancf ancf = (Ancf)ctx;
   const PetscScalar *y, *yd;
+  const PetscReal *m;
   PetscScalar *f;
+  PetscInt stride;
 
   PetscFunctionBegin;
   (void)ts;
@@ -148,7 +237,8 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(Ydot, &yd));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfResidual(ancf, y, yd + 6, 12, f + 6, 12));
+  m = AncfDamped(ancf, y + 6, yd + 6, 12, &stride);
+  PetscCall(AncfResidual(ancf, y, 12, m, stride, f + 6, 12));
   AncfFixRows(ancf, yd + 6, 12, f + 6, 12);
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) f[c] = yd[c] - y[c + 6];
@@ -167,20 +257,26 @@ static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscRe
   (void)t;
   (void)Ydot;
   PetscCall(VecGetArrayRead(Y, &y));
-  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift, shift, J, P));
+  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift + ((Ancf)ctx)->damping, shift, J, P));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* a = M^-1 (Q^g + Q^a - Q^e), coordinates and result with their own strides */
-static PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal *a, PetscInt astride)
+PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
+                                        PetscInt astride)
 {
+  const PetscReal damping = v ? ancf->damping : 0;
+
   PetscFunctionBegin;
-  PetscCall(AncfResidual(ancf, e, NULL, stride, a, astride));
+  PetscCall(AncfResidual(ancf, e, stride, ancf->restm, 6, a, astride));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
   AncfFixRows(ancf, NULL, 0, a, astride);
   PetscCall(AncfMassSolve(ancf, a, astride));
+  for (PetscInt j = 0; j < ancf->nnodes && damping > 0; j++)
+    for (int c = 0; c < 6; c++)
+      if (!(ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) a[j * astride + c] -= damping * v[j * stride + c];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,7 +291,7 @@ static PetscErrorCode AncfRHSFunction(TS ts, PetscReal t, Vec Y, Vec G, void *ct
   AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayWrite(G, &g));
-  PetscCall(AncfExplicitAcceleration(ancf, y, 12, g + 6, 12));
+  PetscCall(AncfExplicitAcceleration(ancf, y, y + 6, 12, g + 6, 12));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) g[c] = y[c + 6];
   PetscCall(VecRestoreArrayWrite(G, &g));
@@ -225,7 +321,7 @@ static PetscErrorCode AncfSymplecticMomentum(TS ts, PetscReal t, Vec X, Vec G, v
   AncfSetLoadTime((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(G, &g));
-  PetscCall(AncfExplicitAcceleration(ancf, x, 6, g, 6));
+  PetscCall(AncfExplicitAcceleration(ancf, x, NULL, 6, g, 6));
   PetscCall(VecRestoreArrayWrite(G, &g));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -276,7 +372,8 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(ancf->backup));
-  PetscCall(PetscFree2(ancf->history, ancf->vprev));
+  PetscCall(PetscFree(ancf->damped));
+  if (!ancf->whole) PetscCall(PetscFree2(ancf->history, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
   PetscCall(MatDestroy(&ancf->J));
@@ -304,7 +401,7 @@ static PetscErrorCode AncfSetUpSymplectic(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AncfChooseForm(Ancf ancf)
+PetscErrorCode AncfChooseForm(Ancf ancf)
 {
   TSType type;
   const size_t n = sizeof(ancf_types) / sizeof(ancf_types[0]);
@@ -364,6 +461,10 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(PetscMalloc1(3 * n, &ancf->backup));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
+  PetscCheck(ancf->damping == 0 || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
+             "-ancf_damping %g needs another -ancf_ts_type than basicsymplectic, which takes no velocities",
+             (double)ancf->damping);
+  if (ancf->damping > 0) PetscCall(PetscMalloc1(6 * ancf->nnodes, &ancf->damped));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -409,24 +510,34 @@ PetscErrorCode AncfTSTouch(Ancf ancf)
 /* State -> TS, whose history is discarded. */
 PetscErrorCode AncfTSPush(Ancf ancf)
 {
-  PetscScalar *y;
-
   PetscFunctionBegin;
+  if (ancf->ngroups) {
+    PetscCall(AncfGroupPush(ancf));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(TSSetTime(ancf->ts, ancf->t));
   PetscCall(TSRestartStep(ancf->ts));
   ancf->restart = PETSC_TRUE;
   ancf->given = PETSC_FALSE;
   if (ancf->form == ANCF_FORM_SECOND)
     PetscCall(AncfTSTouch(ancf));
-  else {
-    PetscCall(VecGetArrayWrite(ancf->U, &y));
-    for (PetscInt j = 0; j < ancf->nnodes; j++)
-      for (PetscInt c = 0; c < 6; c++) {
-        y[12 * j + c] = ancf->e[6 * j + c];
-        y[12 * j + 6 + c] = ancf->v[6 * j + c];
-      }
-    PetscCall(VecRestoreArrayWrite(ancf->U, &y));
-  }
+  else
+    PetscCall(AncfTSCopy(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfTSCopy(Ancf ancf)
+{
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(ancf->U, &y));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) {
+      y[12 * j + c] = ancf->e[6 * j + c];
+      y[12 * j + 6 + c] = ancf->v[6 * j + c];
+    }
+  PetscCall(VecRestoreArrayWrite(ancf->U, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -66,6 +66,48 @@ static inline __attribute__((always_inline)) void Subtract(const int bs, const i
     }
 }
 
+/* A = L D L^T of a symmetric matrix given by its upper triangle: row k then holds column k of L, the diagonal 1/D. */
+static inline __attribute__((always_inline)) void LDL(const int bs, Lanes *A)
+{
+  for (int k = 0; k < bs; k++) {
+    const Lanes inv = 1.0 / A[bs * k + k];
+
+    A[bs * k + k] = inv;
+    for (int i = k + 1; i < bs; i++) {
+      const Lanes l = A[bs * k + i] * inv;
+
+      for (int j = i; j < bs; j++) A[bs * i + j] -= l * A[bs * k + j];
+    }
+    for (int i = k + 1; i < bs; i++) A[bs * k + i] *= inv;
+  }
+}
+
+static inline __attribute__((always_inline)) void LDLSolve(const int bs, const int nx, const Lanes *A, Lanes *X)
+{
+  for (int k = 0; k < bs; k++)
+    for (int i = k + 1; i < bs; i++)
+      for (int c = 0; c < nx; c++) X[nx * i + c] -= A[bs * k + i] * X[nx * k + c];
+  for (int i = bs - 1; i >= 0; i--)
+    for (int c = 0; c < nx; c++) {
+      Lanes x = X[nx * i + c] * A[bs * i + i];
+
+      for (int k = i + 1; k < bs; k++) x -= A[bs * i + k] * X[nx * k + c];
+      X[nx * i + c] = x;
+    }
+}
+
+/* Upper triangle of C -= A^T B, known to be symmetric. */
+static inline __attribute__((always_inline)) void SubtractUpper(const int bs, const Lanes *A, const Lanes *B, Lanes *C)
+{
+  for (int i = 0; i < bs; i++)
+    for (int j = i; j < bs; j++) {
+      Lanes c = C[bs * i + j];
+
+      for (int k = 0; k < bs; k++) c -= A[bs * k + i] * B[bs * k + j];
+      C[bs * i + j] = c;
+    }
+}
+
 static inline __attribute__((always_inline)) void Gather(const int bs, const Batch *b, PetscInt row, const PetscScalar *x,
                                                          Lanes *y)
 {
@@ -97,12 +139,12 @@ static inline __attribute__((always_inline)) void FusedBatch(const int bs, const
   s->fill(s->ctx, b->chain, n, D, U);
   Gather(bs, b, 0, x, z);
   for (PetscInt j = 0; j < n; j++) {
-    LU(bs, D + j * m);
-    Solve(bs, 1, D + j * m, z + j * bs);
+    LDL(bs, D + j * m);
+    LDLSolve(bs, 1, D + j * m, z + j * bs);
     if (j + 1 == n) break;
     for (PetscInt i = 0; i < m; i++) L[i] = U[j * m + i]; /* the block below is its transpose */
-    Solve(bs, bs, D + j * m, U + j * m);
-    Subtract(bs, bs, L, 1, U + j * m, D + (j + 1) * m);
+    LDLSolve(bs, bs, D + j * m, U + j * m);
+    SubtractUpper(bs, L, U + j * m, D + (j + 1) * m);
     Gather(bs, b, j + 1, x, z + (j + 1) * bs);
     Subtract(bs, 1, L, 1, z + j * bs, z + (j + 1) * bs);
   }
@@ -356,7 +398,7 @@ static PetscErrorCode PCSetUp_BlockTri(PC pc)
   }
   if (t->source) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < t->nbatches; k++) PetscCall(Extract(P, t, &t->batches[k]));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (t->nbatches >= 64)
   for (PetscInt k = 0; k < t->nbatches; k++) {
     const Batch *b = &t->batches[k];
     Lanes *f = t->factor + 3 * (size_t)(t->bs * t->bs) * b->offset;
@@ -376,7 +418,7 @@ static PetscErrorCode PCApply_BlockTri(PC pc, Vec X, Vec Y)
   PetscCall(GetContext(pc, &t));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(Y, &y));
-#pragma omp parallel for schedule(static) num_threads(t->nthreads)
+#pragma omp parallel for schedule(static) num_threads(t->nthreads) if (t->nbatches >= 64)
   for (PetscInt k = 0; k < t->nbatches; k++) {
     const Batch *b = &t->batches[k];
     Lanes *w = t->work + (size_t)Thread() * t->nwork;

@@ -22,7 +22,7 @@ typedef PetscReal BlockTriLanes __attribute__((vector_size(BLOCKTRI_LANES * size
 /*
   Blocks of up to 8 chains, chain[i] < 0 for an unused lane: D[row][r][c] and U[row][r][c] (block (row, row+1)), all rows up to
   nrows, which is the longest length in the batch. Rows beyond the end of a chain: D = identity, U = 0. The matrix must be
-  symmetric. Called by several threads at once.
+  symmetric, and only the upper triangle of D is read. Called by several threads at once.
 */
 typedef void (*BlockTriFill)(void *ctx, const PetscInt chain[BLOCKTRI_LANES], PetscInt nrows, BlockTriLanes *D, BlockTriLanes *U);
 

@@ -52,6 +52,8 @@ typedef struct {
 typedef struct {
   char name[APP_NAME_LEN];
   RigidBodySpec spec;
+  char file[PETSC_MAX_PATH_LEN]; /* mesh: STL file */
+  PetscReal scale;               /* m per unit of the file */
 } SceneBody;
 
 /* Fields of a frame that may be left out. */
@@ -128,6 +130,7 @@ PetscErrorCode AppHelp(void);
 
 /* output.c: one HDF5 file per frame and an XDMF index of them all. */
 typedef struct _AppOutput *AppOutput;
+PetscErrorCode AppOutputCheck(const char dir[]);
 PetscErrorCode AppOutputCreate(const App *app, AppOutput *out);
 PetscErrorCode AppOutputWrite(AppOutput out, App *app);
 PetscErrorCode AppOutputLast(AppOutput out, PetscReal *t, const char **file, PetscInt *frames);

@@ -29,38 +29,77 @@ static PetscErrorCode build_sph(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode build_structures(App *app)
+/* In 2D a beam is a plate of thickness d, for one metre of depth: A = d, I = d^3/12 unless stiffness and mass are given. */
+static PetscErrorCode plate_section(AncfBeamSpec *spec)
+{
+  const PetscReal d = spec->diameter;
+
+  PetscFunctionBegin;
+  if (!(d > 0 && spec->young > 0 && spec->density > 0))
+    PetscFunctionReturn(PETSC_SUCCESS); /* AncfAddBeam() refuses it or does not need it */
+  if (spec->EA == PETSC_DECIDE) spec->EA = spec->young * d;
+  if (spec->EI == PETSC_DECIDE) spec->EI = spec->young * d * d * d / 12;
+  if (spec->rhoA == PETSC_DECIDE) spec->rhoA = spec->density * d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode build_beams(App *app, PetscReal rho)
 {
   AppScene *s = &app->scene;
+
+  PetscFunctionBegin;
+  if (!s->nbeams) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(app->dim == 3 || rho == 0, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "buoyancy archimedes is not there for beams in a 2D scene: use resolved");
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &app->ancf));
+  PetscCall(AncfSetGravity(app->ancf, s->gravity));
+  PetscCall(AncfSetFluidDensity(app->ancf, rho));
+  for (PetscInt b = 0; b < s->nbeams; b++) {
+    AppDoing(app, "beam '%s'", s->beams[b].name);
+    if (app->dim == 2) PetscCall(plate_section(&s->beams[b].spec));
+    PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
+    AppDoing(app, "%s", "");
+  }
+  PetscCall(AncfSetFromOptions(app->ancf));
+  PetscCall(AncfSetUp(app->ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode build_bodies(App *app, PetscReal rho)
+{
+  AppScene *s = &app->scene;
+
+  PetscFunctionBegin;
+  if (!s->nbodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &app->rigid));
+  PetscCall(RigidSetDimension(app->rigid, app->dim));
+  PetscCall(RigidSetGravity(app->rigid, s->gravity));
+  PetscCall(RigidSetFluidDensity(app->rigid, rho));
+  PetscCall(RigidSetFromOptions(app->rigid));
+  for (PetscInt b = 0; b < s->nbodies; b++) {
+    RigidBodySpec *spec = &s->bodies[b].spec;
+    RigidGeometry mesh = NULL;
+    AppDoing(app, "body '%s'", s->bodies[b].name);
+    if (spec->shape == RIGID_MESH)
+      PetscCall(RigidGeometryCreateSTL(PETSC_COMM_SELF, s->bodies[b].file, s->bodies[b].scale, &mesh));
+    spec->geometry = mesh;
+    PetscCall(RigidAddBody(app->rigid, spec, NULL));
+    PetscCall(RigidGeometryDestroy(&mesh)); /* the body keeps its own reference */
+    PetscCall(RigidGetBody(app->rigid, b, spec));
+    AppDoing(app, "%s", "");
+  }
+  PetscCall(RigidSetUp(app->rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode build_structures(App *app)
+{
   PetscReal rho = 0;
 
   PetscFunctionBegin;
-  if (s->fluid && s->buoyancy == BUOYANCY_ARCHIMEDES) PetscCall(SphGetDensity(app->sph, &rho));
-  if (s->nbeams) {
-    PetscCall(AncfCreate(PETSC_COMM_SELF, &app->ancf));
-    PetscCall(AncfSetGravity(app->ancf, s->gravity));
-    PetscCall(AncfSetFluidDensity(app->ancf, rho));
-    for (PetscInt b = 0; b < s->nbeams; b++) {
-      AppDoing(app, "beam '%s'", s->beams[b].name);
-      PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
-      AppDoing(app, "%s", "");
-    }
-    PetscCall(AncfSetFromOptions(app->ancf));
-    PetscCall(AncfSetUp(app->ancf));
-  }
-  if (s->nbodies) {
-    PetscCall(RigidCreate(PETSC_COMM_SELF, &app->rigid));
-    PetscCall(RigidSetDimension(app->rigid, app->dim));
-    PetscCall(RigidSetGravity(app->rigid, s->gravity));
-    PetscCall(RigidSetFluidDensity(app->rigid, rho));
-    PetscCall(RigidSetFromOptions(app->rigid));
-    for (PetscInt b = 0; b < s->nbodies; b++) {
-      AppDoing(app, "body '%s'", s->bodies[b].name);
-      PetscCall(RigidAddBody(app->rigid, &s->bodies[b].spec, NULL));
-      AppDoing(app, "%s", "");
-    }
-    PetscCall(RigidSetUp(app->rigid));
-  }
+  if (app->sph && app->scene.buoyancy == BUOYANCY_ARCHIMEDES) PetscCall(SphGetDensity(app->sph, &rho));
+  PetscCall(build_beams(app, rho));
+  PetscCall(build_bodies(app, rho));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -155,6 +194,29 @@ static PetscErrorCode check_size(const App *app, PetscReal dp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A periodic axis must be a whole number of spacings long, else its lattice does not close. */
+static PetscErrorCode check_lattice(const App *app, PetscReal dp)
+{
+  const AppScene *s = &app->scene;
+
+  PetscFunctionBegin;
+  for (PetscInt a = 0; a < app->dim; a++) {
+    const PetscReal length = s->fluidhi[a] - s->fluidlo[a],
+                    sites = PetscMax((PetscReal)1, PetscFloorReal(length / dp + (PetscReal)0.5));
+    const PetscBool whole = (PetscBool)(PetscAbsReal(length / dp - sites) < 1e-5 * sites);
+    PetscCheck(whole || !s->periodic[a] || length < s->hi[a] - s->lo[a], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "the periodic axis %c is %g m long, which is not a whole number of sph_dp = %g m (%" PetscInt_FMT
+               " of %.10g m would fit)",
+               "xyz"[a], (double)length, (double)dp, (PetscInt)sites, (double)(length / sites));
+    if (!whole && s->wall[2 * a] && s->wall[2 * a + 1])
+      fprintf(stderr,
+              "frond: warning: the fluid is %g m long along %c, not a whole number of sph_dp = %g m: a gap of %.3g m at the wall "
+              "(below 0: an overlap)\n",
+              (double)length, "xyz"[a], (double)dp, (double)(length - sites * dp));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode fill_fluid(App *app)
 {
   AppScene *s = &app->scene;
@@ -178,6 +240,7 @@ static PetscErrorCode fill_fluid(App *app)
   PetscCheck(n > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "the domain has no fluid: no marker of spacing sph_dp = %g m fits into the fluid box outside the structures",
              (double)dp);
+  PetscCall(check_lattice(app, dp));
   PetscCall(PetscMalloc2(3 * n, &v, n, &p));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(PetscArraycpy(v + 3 * i, s->fluidvelocity, 3));
@@ -277,6 +340,31 @@ static PetscErrorCode count_surfaces(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A structure that lies outside of the domain as a whole would never meet the fluid. */
+static PetscErrorCode check_places(const App *app)
+{
+  const AppScene *s = &app->scene;
+
+  PetscFunctionBegin;
+  for (PetscInt a = 0; a < app->dim; a++) {
+    if (s->periodic[a]) continue;
+    for (PetscInt b = 0; b < s->nbeams; b++) {
+      const AncfBeamSpec *spec = &s->beams[b].spec;
+      PetscCheck(PetscMax(spec->start[a], spec->end[a]) > s->lo[a] && PetscMin(spec->start[a], spec->end[a]) < s->hi[a],
+                 PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+                 "beam '%s' lies outside of the domain along %c (%g to %g m; the domain: %g to %g m)", s->beams[b].name, "xyz"[a],
+                 (double)spec -> start[a], (double)spec -> end[a], (double)s -> lo[a], (double)s -> hi[a]);
+    }
+    for (PetscInt b = 0; b < s->nbodies; b++) {
+      const PetscReal x = s->bodies[b].spec.position[a];
+      PetscCheck(x > s->lo[a] && x < s->hi[a], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+                 "body '%s': its centre, %c = %g m, lies outside of the domain (%g to %g m)", s->bodies[b].name, "xyz"[a],
+                 (double)x, (double)s -> lo[a], (double)s -> hi[a]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode build_couple(App *app)
 {
   AppScene *s = &app->scene;
@@ -289,6 +377,7 @@ static PetscErrorCode build_couple(App *app)
   PetscCall(CoupleCreate(PETSC_COMM_SELF, &app->couple));
   PetscCall(CoupleSetSph(app->couple, app->sph));
   PetscCall(CoupleSetFromOptions(app->couple));
+  PetscCall(check_places(app));
   PetscCall(fill_fluid(app));
   PetscCall(add_walls(app));
   PetscCall(SphGetSpacing(app->sph, &dp));

@@ -208,30 +208,62 @@ static PetscBool is_petsc_wide(const char name[])
   return PETSC_FALSE;
 }
 
+/* beam_<name>_<key> or body_<name>_<key> of a structure that is not listed: where <name> lies. */
+static PetscBool names_absent(const AppKnown *list, const char name[], const char **start, int *length)
+{
+  if (strncmp(name, "beam_", 5) && strncmp(name, "body_", 5)) return PETSC_FALSE;
+  for (PetscInt i = 0; i < list->n; i++) {
+    const char *key = list->name[i] + 4; /* _<key> */
+    size_t n = strlen(name), k = strlen(list->name[i]) > 5 ? strlen(key) : n;
+    if (strncmp(name, list->name[i], 5) || n < 6 + k || strcmp(name + n - k, key)) continue;
+    *start = name + 5;
+    *length = (int)(n - k - 5);
+    return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* What is wrong with an option that nothing asked for; empty for nothing. */
+static void complain(const AppKnown *list, const char name[], PetscBool only_unlisted, size_t len, char text[])
+{
+  const char *nearest, *absent;
+  PetscBool known;
+  int length;
+
+  text[0] = 0;
+  if (is_petsc_wide(name)) return;
+  look_up(list, name, &known, &nearest);
+  if (known && only_unlisted) return;
+  if (known)
+    snprintf(text, len, "option %s has no effect in this scene", name);
+  else if (names_absent(list, name, &absent, &length))
+    snprintf(text, len, "option %s: %s does not list '%.*s'", name, name[1] == 'e' ? "beams" : "bodies", length, absent);
+  else if (nearest)
+    snprintf(text, len, "unknown option %s (did you mean %s?)", name, nearest);
+  else
+    snprintf(text, len, "unknown option %s", name);
+}
+
 /*
   One sentence about the options that were set and that nothing asked for; empty when there are none. With `only_unlisted`,
   an option that exists but was not asked for yet is no offence.
 */
 PetscErrorCode AppOptionsUnused(const AppKnown *list, PetscBool only_unlisted, size_t len, char text[])
 {
-  PetscInt n;
+  PetscInt n, bad = 0;
   char **name, **value, one[512];
 
   PetscFunctionBegin;
   text[0] = 0;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &name, &value));
   for (PetscInt i = 0; i < n; i++) {
-    const char *nearest;
-    PetscBool known;
-    if (is_petsc_wide(name[i])) continue;
-    look_up(list, name[i], &known, &nearest);
-    if (known && only_unlisted) continue;
-    if (known)
-      snprintf(one, sizeof(one), "%soption %s has no effect in this scene", text[0] ? "; " : "", name[i]);
-    else if (nearest)
-      snprintf(one, sizeof(one), "%sunknown option %s (did you mean %s?)", text[0] ? "; " : "", name[i], nearest);
-    else
-      snprintf(one, sizeof(one), "%sunknown option %s", text[0] ? "; " : "", name[i]);
+    complain(list, name[i], only_unlisted, sizeof(one), one);
+    if (!one[0] || bad++ >= 4) continue;
+    if (text[0]) PetscCall(PetscStrlcat(text, "; ", len));
+    PetscCall(PetscStrlcat(text, one, len));
+  }
+  if (bad > 4) {
+    PetscCall(PetscSNPrintf(one, sizeof(one), "; and %" PetscInt_FMT " more", bad - 4));
     PetscCall(PetscStrlcat(text, one, len));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &name, &value));

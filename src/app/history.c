@@ -59,8 +59,10 @@ static PetscErrorCode put3(AppHistory h, const char stem[], const char unit[], c
 
 static PetscErrorCode put_beams(AppHistory h, App *app)
 {
+  const char *energy = app->dim == 2 ? "J/m" : "J";
   PetscReal kinetic, elastic, potential, r[3], v[3], reaction[3], L;
   char stem[96];
+  PetscInt steps, newton, linear;
 
   PetscFunctionBegin;
   if (!app->ancf) PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,16 +77,21 @@ static PetscErrorCode put_beams(AppHistory h, App *app)
     PetscCall(put3(h, stem, "m/s", "velocity of the beam's last end", v));
   }
   PetscCall(AncfGetEnergy(app->ancf, &kinetic, &elastic, &potential));
-  PetscCall(put(h, "beams_kinetic", "J", "kinetic energy of all beams", kinetic));
-  PetscCall(put(h, "beams_elastic", "J", "elastic energy of all beams", elastic));
-  PetscCall(put(h, "beams_potential", "J", "potential energy of all beams", potential));
+  PetscCall(put(h, "beams_kinetic", energy, "kinetic energy of all beams", kinetic));
+  PetscCall(put(h, "beams_elastic", energy, "elastic energy of all beams", elastic));
+  PetscCall(put(h, "beams_potential", energy, "potential energy of all beams", potential));
   PetscCall(AncfGetReaction(app->ancf, reaction));
-  PetscCall(put3(h, "beams_support_", "N", "force of the supports on all beams", reaction));
+  PetscCall(put3(h, "beams_support_", app->dim == 2 ? "N/m" : "N", "force of the supports on all beams", reaction));
+  PetscCall(AncfGetCounts(app->ancf, &steps, &newton, &linear));
+  PetscCall(put(h, "beams_steps", "1", "time steps of the beams since the start", (PetscReal)steps));
+  PetscCall(put(h, "beams_newton", "1", "Newton iterations of the beams since the start", (PetscReal)newton));
+  PetscCall(put(h, "beams_linear", "1", "linear iterations of the beams since the start", (PetscReal)linear));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode put_bodies(AppHistory h, App *app)
 {
+  const char *energy = app->dim == 2 ? "J/m" : "J";
   PetscReal kinetic, potential, X[3], V[3], W[3];
   char stem[96];
 
@@ -100,8 +107,8 @@ static PetscErrorCode put_bodies(AppHistory h, App *app)
     PetscCall(put3(h, stem, "rad/s", "angular velocity of the body, space frame", W));
   }
   PetscCall(RigidGetEnergy(app->rigid, &kinetic, &potential));
-  PetscCall(put(h, "bodies_kinetic", "J", "kinetic energy of all bodies", kinetic));
-  PetscCall(put(h, "bodies_potential", "J", "potential energy of all bodies", potential));
+  PetscCall(put(h, "bodies_kinetic", energy, "kinetic energy of all bodies", kinetic));
+  PetscCall(put(h, "bodies_potential", energy, "potential energy of all bodies", potential));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -124,7 +124,7 @@ static void add_misspelt(const AppKnown *known, AppErrors *errors)
   size_t n;
 
   if (!known->n || known->partial || strstr(errors->message, "unknown option")) return;
-  if (AppOptionsUnused(known, PETSC_TRUE, sizeof(text), text) || !text[0]) return;
+  if (AppOptionsUnused(known, PETSC_TRUE, sizeof(text), text) || !text[0] || strstr(errors->message, text)) return;
   n = strlen(errors->message);
   snprintf(errors->message + n, sizeof(errors->message) - n, " [%s]", text);
 }

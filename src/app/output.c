@@ -47,6 +47,31 @@ static PetscErrorCode make_dir(const char dir[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the folder, or the nearest one above that exists, can be written in; makes nothing. */
+PetscErrorCode AppOutputCheck(const char dir[])
+{
+  char path[PETSC_MAX_PATH_LEN], *slash;
+  struct stat st;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(path, dir, sizeof(path)));
+  while (stat(path, &st)) {
+    PetscCheck(errno == ENOENT, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: cannot make the folder '%s': %s", dir,
+               strerror(errno));
+    slash = strrchr(path, '/');
+    if (!slash)
+      PetscCall(PetscStrncpy(path, ".", sizeof(path)));
+    else if (slash == path)
+      slash[1] = 0;
+    else
+      *slash = 0;
+  }
+  PetscCheck(S_ISDIR(st.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: '%s' is not a folder", path);
+  PetscCheck(!access(path, W_OK | X_OK), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: cannot write in '%s': %s", path,
+             strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscBool is_result(const char name[])
 {
   static const char *const fixed[] = {"run.xdmf",   "run.xdmf.part",   "history.csv",

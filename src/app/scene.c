@@ -10,8 +10,9 @@ static const char *const axes[] = {"x", "y", "z", NULL};
 static const char *const buoyancies[] = {"resolved", "archimedes", NULL};
 static const char *const pressures[] = {"hydrostatic", "zero", NULL};
 static const char *const ends[] = {"free", "pin", "clamp", NULL};
-static const char *const shapes[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule", NULL};
+static const char *const shapes[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule", "mesh", NULL};
 static const char *const motions[] = {"fixed", "prescribed", "free", NULL};
+static const char *const locks[] = {"x", "y", "z", "rx", "ry", "rz", NULL};
 static const char *const faults[] = {"x", "v", "rho", NULL};
 
 #define COUNT(table) ((PetscInt)(sizeof(table) / sizeof((table)[0])))
@@ -136,12 +137,14 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], AncfBea
       {OPT_VEC, "start", "First end of the axis, m (needed)", spec->start, NULL, &set[0]},
       {OPT_VEC, "end", "Last end of the axis, m (needed)", spec->end, NULL, &set[1]},
       {OPT_INT, "elements", "Number of ANCF elements", &spec->elements, NULL, NULL},
-      {OPT_REAL, "diameter", "Diameter of the circular section, m (needed)", &spec->diameter, NULL, NULL},
+      {OPT_REAL, "diameter", "Diameter of the circular section; in 2D the thickness of a plate of unit depth, m (needed)",
+       &spec->diameter, NULL, NULL},
       {OPT_REAL, "density", "Density of the material, kg/m^3 (needed)", &spec->density, NULL, NULL},
-      {OPT_REAL, "young", "Young's modulus E, Pa (needed)", &spec->young, NULL, NULL},
-      {OPT_REAL, "EA", "Axial stiffness in place of E and diameter, N (-1: derived)", &spec->EA, NULL, &stiff[0]},
-      {OPT_REAL, "EI", "Bending stiffness in place of E and diameter, N m^2 (-1: derived)", &spec->EI, NULL, &stiff[1]},
-      {OPT_REAL, "rhoA", "Mass per length in place of density and diameter, kg/m (-1: derived)", &spec->rhoA, NULL, &stiff[2]},
+      {OPT_REAL, "young", "Young's modulus E, Pa; in 2D that of the plate, E/(1-nu^2) (needed)", &spec->young, NULL, NULL},
+      {OPT_REAL, "EA", "Axial stiffness in place of E and diameter, N; 2D: N/m (-1: derived)", &spec->EA, NULL, &stiff[0]},
+      {OPT_REAL, "EI", "Bending stiffness in place of E and diameter, N m^2; 2D: N m (-1: derived)", &spec->EI, NULL, &stiff[1]},
+      {OPT_REAL, "rhoA", "Mass per length in place of density and diameter, kg/m; 2D: kg/m^2 (-1: derived)", &spec->rhoA, NULL,
+       &stiff[2]},
       {OPT_VEC, "velocity", "Initial velocity, m/s", spec->velocity, NULL, NULL},
       {OPT_CHOICE, "end0", "Support of the first end", &end0, ends, NULL},
       {OPT_CHOICE, "end1", "Support of the last end", &end1, ends, NULL},
@@ -157,13 +160,15 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], AncfBea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode read_body(const char prefix[], const char title[], RigidBodySpec *spec, PetscBool set[2])
+static PetscErrorCode read_body(const char prefix[], const char title[], SceneBody *body, PetscBool set[2])
 {
+  RigidBodySpec *spec = &body->spec;
   PetscInt shape = spec->shape, motion = spec->motion;
   const AppOpt opt[] = {
       {OPT_CHOICE, "shape", "Shape", &shape, shapes, NULL},
       {OPT_CHOICE, "motion", "Motion", &motion, motions, NULL},
-      {OPT_VEC, "size", "sphere: radius,0,0; box: edges; cylinder, capsule: radius,length,0; ellipsoid: semi-axes; m (needed)",
+      {OPT_VEC, "size",
+       "sphere: radius,0,0; box: edges; cylinder, capsule: radius,length,0; ellipsoid: semi-axes; mesh: none; m (needed)",
        spec->size, NULL, &set[0]},
       {OPT_REAL, "density", "Density, kg/m^3", &spec->density, NULL, NULL},
       {OPT_VEC, "position", "Centre, m (needed)", spec->position, NULL, &set[1]},
@@ -172,6 +177,9 @@ static PetscErrorCode read_body(const char prefix[], const char title[], RigidBo
       {OPT_VEC, "omega", "Angular velocity in the space frame, rad/s", spec->omega, NULL, NULL},
       {OPT_REAL, "mass", "Mass in place of density, kg (-1: derived)", &spec->mass, NULL, NULL},
       {OPT_VEC, "inertia", "Principal moments in place of density, kg m^2 (-1: derived)", spec->inertia, NULL, NULL},
+      {OPT_SUBSET, "lock", "Motions that a free body may not make: along x, y, z and about x, y, z", spec->lock, locks, NULL},
+      {OPT_STRING, "file", "mesh: STL file of the closed surface (needed for a mesh)", body->file, NULL, NULL},
+      {OPT_REAL, "scale", "mesh: metres per unit of the file", &body->scale, NULL, NULL},
   };
 
   PetscFunctionBegin;
@@ -181,13 +189,63 @@ static PetscErrorCode read_body(const char prefix[], const char title[], RigidBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode read_beams(AppScene *s, const AppNames *names, PetscBool help)
+{
+  AncfBeamSpec all;
+  PetscBool allset[2] = {PETSC_FALSE, PETSC_FALSE};
+  char prefix[128], title[128];
+
+  PetscFunctionBegin;
+  PetscCall(AncfBeamSpecInit(&all));
+  if (names->n || help) PetscCall(read_beam("beam_", "Beams: the same for all; -beam_<name>_... for one", &all, allset));
+  for (PetscInt i = 0; i < names->n; i++) {
+    PetscBool set[2] = {allset[0], allset[1]};
+    s->beams[i].spec = all;
+    PetscCall(PetscStrncpy(s->beams[i].name, names->name[i], APP_NAME_LEN));
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "beam_%s_", names->name[i]));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Beam '%s'", names->name[i]));
+    PetscCall(read_beam(prefix, title, &s->beams[i].spec, set));
+    PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s' needs %s%s", names->name[i], prefix,
+               set[0] ? "end" : "start");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode read_bodies(AppScene *s, const AppNames *names, PetscBool help)
+{
+  SceneBody all;
+  PetscBool allset[2] = {PETSC_FALSE, PETSC_FALSE};
+  char prefix[128], title[128];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(&all, sizeof(all)));
+  PetscCall(RigidBodySpecInit(&all.spec));
+  all.scale = 1;
+  if (names->n || help) PetscCall(read_body("body_", "Rigid bodies: the same for all; -body_<name>_... for one", &all, allset));
+  for (PetscInt i = 0; i < names->n; i++) {
+    SceneBody *body = &s->bodies[i];
+    PetscBool set[2] = {allset[0], allset[1]}, mesh;
+    *body = all;
+    PetscCall(PetscStrncpy(body->name, names->name[i], APP_NAME_LEN));
+    for (PetscInt j = 0; j < s->nbeams; j++)
+      PetscCheck(strcasecmp(s->beams[j].name, body->name), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+                 "bodies: the name '%s' is a beam's already", body->name);
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "body_%s_", body->name));
+    PetscCall(PetscSNPrintf(title, sizeof(title), "Body '%s'", body->name));
+    PetscCall(read_body(prefix, title, body, set));
+    mesh = (PetscBool)(body->spec.shape == RIGID_MESH);
+    PetscCheck(set[1] && (set[0] || mesh), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "body '%s' needs %s%s", body->name, prefix,
+               set[1] ? "size" : "position");
+    PetscCheck(!mesh || body->file[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "body '%s' needs %sfile: the STL file of its mesh",
+               body->name, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode read_structures(AppScene *s)
 {
   AppNames beams = {0, NULL}, bodies = {0, NULL};
-  AncfBeamSpec beam;
-  RigidBodySpec body;
-  PetscBool beamset[2] = {PETSC_FALSE, PETSC_FALSE}, bodyset[2] = {PETSC_FALSE, PETSC_FALSE}, help;
-  char prefix[128], title[128];
+  PetscBool help;
   const AppOpt opt[] = {
       {OPT_NAMES, "beams", "Names of the beams, separated by commas", &beams, NULL, NULL},
       {OPT_NAMES, "bodies", "Names of the rigid bodies, separated by commas", &bodies, NULL, NULL},
@@ -196,36 +254,11 @@ static PetscErrorCode read_structures(AppScene *s)
   PetscFunctionBegin;
   PetscCall(AppOptionsRead(NULL, "Scene: structures", COUNT(opt), opt));
   PetscCall(PetscOptionsHasHelp(NULL, &help));
-  PetscCall(AncfBeamSpecInit(&beam));
-  PetscCall(RigidBodySpecInit(&body));
-  if (beams.n || help) PetscCall(read_beam("beam_", "Beams: the same for all; -beam_<name>_... for one", &beam, beamset));
-  if (bodies.n || help) PetscCall(read_body("body_", "Rigid bodies: the same for all; -body_<name>_... for one", &body, bodyset));
   s->nbeams = beams.n;
   s->nbodies = bodies.n;
   PetscCall(PetscCalloc2(beams.n, &s->beams, bodies.n, &s->bodies));
-  for (PetscInt i = 0; i < beams.n; i++) {
-    PetscBool set[2] = {beamset[0], beamset[1]};
-    s->beams[i].spec = beam;
-    PetscCall(PetscStrncpy(s->beams[i].name, beams.name[i], APP_NAME_LEN));
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "beam_%s_", beams.name[i]));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "Beam '%s'", beams.name[i]));
-    PetscCall(read_beam(prefix, title, &s->beams[i].spec, set));
-    PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s' needs %s%s", beams.name[i], prefix,
-               set[0] ? "end" : "start");
-  }
-  for (PetscInt i = 0; i < bodies.n; i++) {
-    PetscBool set[2] = {bodyset[0], bodyset[1]};
-    s->bodies[i].spec = body;
-    PetscCall(PetscStrncpy(s->bodies[i].name, bodies.name[i], APP_NAME_LEN));
-    for (PetscInt j = 0; j < beams.n; j++)
-      PetscCheck(strcasecmp(beams.name[j], bodies.name[i]), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
-                 "bodies: the name '%s' is a beam's already", bodies.name[i]);
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "body_%s_", bodies.name[i]));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "Body '%s'", bodies.name[i]));
-    PetscCall(read_body(prefix, title, &s->bodies[i].spec, set));
-    PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "body '%s' needs %s%s", bodies.name[i], prefix,
-               set[0] ? "position" : "size");
-  }
+  PetscCall(read_beams(s, &beams, help));
+  PetscCall(read_bodies(s, &bodies, help));
   PetscCall(PetscFree(beams.name));
   PetscCall(PetscFree(bodies.name));
   PetscFunctionReturn(PETSC_SUCCESS);

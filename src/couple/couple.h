@@ -45,6 +45,13 @@ typedef struct {
   PetscErrorCode (*view)(CoupleSurface, PetscViewer);
   /* Optional: free the context. */
   PetscErrorCode (*destroy)(CoupleSurface);
+  /*
+    Optional, all three or none, for CoupleSaveState(): how many reals the state takes, put it there, go back to it; the run then
+    goes on with the same bits. A state shared by surfaces (beams of one Ancf) is one surface's to save.
+  */
+  PetscErrorCode (*statesize)(CoupleSurface, PetscInt *n);
+  PetscErrorCode (*save)(CoupleSurface, PetscReal *state);
+  PetscErrorCode (*load)(CoupleSurface, const PetscReal *state);
 } CoupleSurfaceOps;
 
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx,
@@ -74,6 +81,10 @@ FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
 FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
 /* Upper bound on the step, s; PETSC_DECIDE for none. */
 FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax);
+/* Strong coupling: at most n iterations per step until the forces agree to a relative tolerance; 1 is the staggered step. */
+FROND_EXTERN PetscErrorCode CoupleSetIterations(Couple couple, PetscInt n, PetscReal tolerance, PetscReal relaxation);
+/* Iterations made since set-up, and steps that missed the tolerance; either may be NULL. */
+FROND_EXTERN PetscErrorCode CoupleGetIterations(Couple couple, PetscInt *iterations, PetscInt *unconverged);
 FROND_EXTERN PetscErrorCode CoupleSetFromOptions(Couple couple);
 /* Gives every surface's markers to the fluid and sets the fluid up. Add the fluid markers before. */
 FROND_EXTERN PetscErrorCode CoupleSetUp(Couple couple);
@@ -87,6 +98,24 @@ FROND_EXTERN PetscErrorCode CoupleGetNumSurfaces(Couple couple, PetscInt *n);
 FROND_EXTERN PetscErrorCode CoupleGetSurface(Couple couple, PetscInt i, CoupleSurface *surface, PetscInt *group);
 /* Audit of the last step's transfer on surface i. */
 FROND_EXTERN PetscErrorCode CoupleGetAudit(Couple couple, PetscInt i, CoupleAudit *audit);
+
+/* Steps to time t (s), which must lie after the current one. */
+FROND_EXTERN PetscErrorCode CoupleAdvance(Couple couple, PetscReal t);
+/* Markers of surface i: how many (n), positions now (m), velocities now (m/s), fluid forces of the last step (N), n x 3 each;
+   borrowed until the next step. Any may be NULL. */
+FROND_EXTERN PetscErrorCode CoupleGetMarkers(Couple couple, PetscInt i, PetscInt *n, const PetscReal **x, const PetscReal **v,
+                                             const PetscReal **f);
+
+/*
+  Rolling back: CoupleSaveState() keeps fluid and structures as they are between two steps (*state is made when NULL, else used
+  again); CoupleRestoreState() goes back there, as often as wanted, and the run goes on with the bits that it went on with after
+  saving. Several states may be kept. Saving makes integrators with a memory start from what is saved, a change at round-off (a
+  multistep method of PETSc begins anew). Errors: PETSC_ERR_SUP when a surface cannot save its state.
+*/
+typedef struct _p_CoupleState *CoupleState;
+FROND_EXTERN PetscErrorCode CoupleSaveState(Couple couple, CoupleState *state);
+FROND_EXTERN PetscErrorCode CoupleRestoreState(Couple couple, CoupleState state);
+FROND_EXTERN PetscErrorCode CoupleStateDestroy(CoupleState *state);
 
 /*
   Balance since set-up: impulses that went into the fluid and structures (kg m/s). residual = fluid momentum + structure momentum

@@ -1,240 +1,62 @@
 /*
   couplebeam.c - adapter of an ANCF beam: disks of BCE markers along the axis (Sect. 2.4, Fig. 2b), S^T projection of their forces
-  (Eq. 23).
-
-  A disk at arc coordinate s is rigid and normal to the tangent t = r_x/|r_x|. A marker at offset o from the axis moves with
-  r' + w x o, w = t x r_x'/|r_x|: the turning of the tangent without spin about it, which a gradient-deficient element has no
-  coordinate for. A force F on it does the virtual work F . dr + (o x F) . (t x dr_x)/|r_x|, hence the generalised force
-  Q = S^T F + S_x^T ((o x F) x t)/|r_x|. The axial part of the torque o x F does no work on any coordinate of the beam; the audit
-  reports it as twist.
+  (Eq. 23). A beam is a host (couplehost.c) whose nodes are the vector coordinates r_j, r_j,x; its sections are the disks.
 */
+#include "couplehost.h"
 #include "coupleimpl.h"
 
 typedef struct {
   Ancf ancf;
-  PetscInt beam, dim, node0, elements;
-  PetscReal l, rhoA; /* element length, m; mass per length, kg/m */
-  PetscInt ndisk, n;
-  PetscInt *element;      /* per disk */
-  PetscReal *xi;          /* per disk, in [0,1] */
-  PetscReal *d1;          /* per disk: transported unit normal at the beam's own time, 3 */
-  PetscInt *disk;         /* per marker */
-  PetscReal *off1, *off2; /* per marker: coordinates along d1 and t x d1, m */
-  PetscReal *x0, *volume, *depth;
-  /* of the last kinematics call */
-  PetscReal *r, *t, *len, *o, *v; /* per disk: axis point, tangent (3), |r_x|; per marker: offset, velocity (3) */
-  PetscReal *e, *ed;              /* nodal coordinates and velocities of this beam, (elements + 1) x 6 */
-  PetscReal reaction[2][3];       /* of all supports at the ends of the last step, N; beam 0 only */
+  PetscInt beam, node0, elements, ndisk;
+  PetscReal l, rhoA;        /* element length, m; mass per length, kg/m */
+  PetscReal reaction[2][3]; /* of all supports at the ends of the last step, N; beam 0 only */
 } Beam;
 
-/* State of this beam's nodes extrapolated by dt: e, e', and (shared) e''. */
-static PetscErrorCode Extrapolate(Beam *b, PetscReal dt, const PetscReal **edd)
+static PetscErrorCode GetState_Beam(void *ctx, PetscReal *t, const PetscReal **q, const PetscReal **qdot, const PetscReal **qddot)
 {
-  const PetscReal *e, *v, *a;
-  const PetscInt m = 6 * (b->elements + 1), o = 6 * b->node0;
+  const Beam *b = (const Beam *)ctx;
+  const PetscInt o = 6 * b->node0;
 
   PetscFunctionBegin;
-  PetscCall(AncfGetState(b->ancf, NULL, &e, &v, &a));
-  for (PetscInt i = 0; i < m; i++) {
-    b->e[i] = e[o + i] + dt * (v[o + i] + 0.5 * dt * a[o + i]);
-    b->ed[i] = v[o + i] + dt * a[o + i];
-  }
-  *edd = a + o;
+  PetscCall(AncfGetState(b->ancf, t, q, qdot, qddot));
+  if (q) *q += o;
+  if (qdot) *qdot += o;
+  if (qddot) *qddot += o;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sum_j S_j e_j over the four vector coordinates of an element (Eq. 18). */
-static void Interpolate(const PetscReal S[4], const PetscReal *e12, PetscReal r[3])
+static PetscErrorCode GetLoads_Beam(void *ctx, PetscReal **Q)
 {
-  for (int k = 0; k < 3; k++) r[k] = S[0] * e12[k] + S[1] * e12[3 + k] + S[2] * e12[6 + k] + S[3] * e12[9 + k];
-}
-
-/* Transport of the normal d1 to tangent t: remove its component along t. In 2D it is the in-plane normal. */
-static void Transport(const Beam *b, const PetscReal t[3], PetscReal d1[3])
-{
-  if (b->dim == 2) {
-    d1[0] = -t[1];
-    d1[1] = t[0];
-    d1[2] = 0.0;
-    return;
-  }
-  const PetscReal c = CoupleDot(d1, t);
-  PetscReal n;
-  for (int k = 0; k < 3; k++) d1[k] -= c * t[k];
-  n = PetscSqrtReal(CoupleDot(d1, d1));
-  for (int k = 0; k < 3; k++) d1[k] /= n;
-}
-
-/* Axis motion of disk d: point, tangent, w and dw/dt, velocity and acceleration of the axis point. */
-static void DiskMotion(Beam *b, PetscInt d, const PetscReal *edd, PetscReal w[3], PetscReal alpha[3], PetscReal rd[3],
-                       PetscReal rdd[3])
-{
-  const PetscInt at = 6 * b->element[d];
-  PetscReal S[4], Sx[4], rx[3], rxd[3], rxdd[3], *t = b->t + 3 * d, td[3], c1[3], c2[3], tr;
-
-  AncfShape(b->xi[d], b->l, S);
-  AncfShapeX(b->xi[d], b->l, Sx);
-  Interpolate(S, b->e + at, b->r + 3 * d);
-  Interpolate(S, b->ed + at, rd);
-  Interpolate(S, edd + at, rdd);
-  Interpolate(Sx, b->e + at, rx);
-  Interpolate(Sx, b->ed + at, rxd);
-  Interpolate(Sx, edd + at, rxdd);
-  b->len[d] = PetscSqrtReal(CoupleDot(rx, rx));
-  for (int k = 0; k < 3; k++) t[k] = rx[k] / b->len[d];
-  CoupleCross(t, rxd, w);
-  tr = CoupleDot(t, rxd) / b->len[d];
-  for (int k = 0; k < 3; k++) {
-    w[k] /= b->len[d];
-    td[k] = rxd[k] / b->len[d] - t[k] * tr;
-  }
-  CoupleCross(td, rxd, c1);
-  CoupleCross(t, rxdd, c2);
-  for (int k = 0; k < 3; k++) alpha[k] = (c1[k] + c2[k]) / b->len[d] - w[k] * tr;
-}
-
-static PetscErrorCode Kinematics_Beam(CoupleSurface s, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
-{
-  Beam *b = (Beam *)s->ctx;
-  const PetscReal *edd;
-  PetscInt i = 0;
+  const Beam *b = (const Beam *)ctx;
 
   PetscFunctionBegin;
-  PetscCall(Extrapolate(b, dt, &edd));
-  for (PetscInt d = 0; d < b->ndisk; d++) {
-    PetscReal w[3], alpha[3], rd[3], rdd[3], d1[3], d2[3];
-    DiskMotion(b, d, edd, w, alpha, rd, rdd);
-    for (int k = 0; k < 3; k++) d1[k] = b->d1[3 * d + k];
-    Transport(b, b->t + 3 * d, d1);
-    CoupleCross(b->t + 3 * d, d1, d2);
-    for (; i < b->n && b->disk[i] == d; i++) {
-      PetscReal *o = b->o + 3 * i, wo[3], wwo[3], ao[3];
-      for (int k = 0; k < 3; k++) o[k] = b->off1[i] * d1[k] + b->off2[i] * d2[k];
-      CoupleCross(w, o, wo);
-      CoupleCross(w, wo, wwo);
-      CoupleCross(alpha, o, ao);
-      for (int k = 0; k < 3; k++) {
-        x[3 * i + k] = b->r[3 * d + k] + o[k];
-        v[3 * i + k] = b->v[3 * i + k] = rd[k] + wo[k];
-        a[3 * i + k] = rdd[k] + ao[k] + wwo[k];
-      }
-    }
-  }
+  PetscCall(AncfGetLoads(b->ancf, Q));
+  *Q += 6 * b->node0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetMarkers_Beam(CoupleSurface s, PetscInt *n, const PetscReal **x, const PetscReal **volume,
-                                      const PetscReal **depth)
+/* The first beam's call advances all of them. */
+static PetscErrorCode Advance_Beam(void *ctx, PetscReal t, const PetscReal *Q)
 {
-  const Beam *b = (const Beam *)s->ctx;
+  Beam *b = (Beam *)ctx;
+  PetscReal now;
 
   PetscFunctionBegin;
-  *n = b->n;
-  *x = b->x0;
-  *volume = b->volume;
-  *depth = b->depth;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ZeroLoads_Beam(CoupleSurface s)
-{
-  Beam *b = (Beam *)s->ctx;
-  PetscReal *Q;
-
-  PetscFunctionBegin;
-  PetscCall(AncfGetLoads(b->ancf, &Q));
-  PetscCall(PetscArrayzero(Q + 6 * b->node0, 6 * (b->elements + 1)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Force and moment-like vector of each disk onto the 12 coordinates of its element, Eq. 23 and its off-axis part. */
-static void Project(const Beam *b, PetscInt d, const PetscReal F[3], const PetscReal M[3], PetscReal *Q)
-{
-  PetscReal S[4], Sx[4], g[3], *q = Q + 6 * (b->node0 + b->element[d]);
-
-  AncfShape(b->xi[d], b->l, S);
-  AncfShapeX(b->xi[d], b->l, Sx);
-  CoupleCross(M, b->t + 3 * d, g);
-  for (int j = 0; j < 4; j++)
-    for (int k = 0; k < 3; k++) q[3 * j + k] += S[j] * F[k] + Sx[j] * g[k] / b->len[d];
-}
-
-/* What the generalised forces amount to: force, moment about the origin, power; subtracted from the marker totals. */
-static void AuditBeam(const Beam *b, const PetscReal *Q, const PetscReal axial[3], CoupleAudit *audit)
-{
-  PetscReal F[3] = {0, 0, 0}, M[3] = {axial[0], axial[1], axial[2]}, power = 0.0;
-
-  for (PetscInt j = 0; j <= b->elements; j++) {
-    const PetscReal *q = Q + 6 * (b->node0 + j), *e = b->e + 6 * j, *v = b->ed + 6 * j;
-    PetscReal c1[3], c2[3];
-    CoupleCross(e, q, c1);
-    CoupleCross(e + 3, q + 3, c2);
-    for (int k = 0; k < 3; k++) {
-      F[k] += q[k];
-      M[k] += c1[k] + c2[k];
-    }
-    for (int k = 0; k < 6; k++) power += q[k] * v[k];
-  }
-  for (int k = 0; k < 3; k++) {
-    audit->force_lost[k] = audit->force[k] - F[k];
-    audit->moment_lost[k] = audit->moment[k] - M[k];
-  }
-  audit->power_lost = audit->power - power;
-}
-
-static PetscErrorCode ApplyForces_Beam(CoupleSurface s, const PetscReal *f, CoupleAudit *audit)
-{
-  Beam *b = (Beam *)s->ctx;
-  PetscReal *Q, axial[3] = {0, 0, 0};
-  PetscInt i = 0;
-
-  PetscFunctionBegin;
-  PetscCall(AncfGetLoads(b->ancf, &Q));
-  for (PetscInt d = 0; d < b->ndisk; d++) {
-    PetscReal F[3] = {0, 0, 0}, M[3] = {0, 0, 0}, twist;
-    for (; i < b->n && b->disk[i] == d; i++) {
-      PetscReal c[3];
-      CoupleCross(b->o + 3 * i, f + 3 * i, c);
-      for (int k = 0; k < 3; k++) {
-        F[k] += f[3 * i + k];
-        M[k] += c[k];
-      }
-    }
-    Project(b, d, F, M, Q);
-    twist = CoupleDot(M, b->t + 3 * d);
-    audit->twist += twist;
-    for (int k = 0; k < 3; k++) axial[k] += twist * b->t[3 * d + k];
-  }
-  AuditBeam(b, Q, axial, audit);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Advance_Beam(CoupleSurface s, PetscReal t)
-{
-  Beam *b = (Beam *)s->ctx;
-  const PetscReal *edd;
-  PetscReal now, w[3], alpha[3], rd[3], rdd[3];
-
-  PetscFunctionBegin;
+  (void)Q;
   PetscCall(AncfGetState(b->ancf, &now, NULL, NULL, NULL));
   if (now < t) PetscCall(AncfAdvance(b->ancf, t));
   if (b->beam == 0) {
     PetscCall(PetscArraycpy(b->reaction[0], b->reaction[1], 3));
     PetscCall(AncfGetReaction(b->ancf, b->reaction[1]));
   }
-  PetscCall(Extrapolate(b, 0.0, &edd));
-  for (PetscInt d = 0; d < b->ndisk; d++) {
-    DiskMotion(b, d, edd, w, alpha, rd, rdd);
-    Transport(b, b->t + 3 * d, b->d1 + 3 * d);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Momentum of this beam: the integral of rhoA S e'. Weight and supports are known for all beams together; beam 0 answers for
  * them. */
-static PetscErrorCode Momentum_Beam(CoupleSurface s, PetscReal p[3], PetscReal weight[3], PetscReal support[3])
+static PetscErrorCode Momentum_Beam(void *ctx, PetscReal p[3], PetscReal weight[3], PetscReal support[3])
 {
-  const Beam *b = (const Beam *)s->ctx;
+  const Beam *b = (const Beam *)ctx;
   const PetscReal *v, m = b->rhoA * b->l;
 
   PetscFunctionBegin;
@@ -250,25 +72,81 @@ static PetscErrorCode Momentum_Beam(CoupleSurface s, PetscReal p[3], PetscReal w
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode View_Beam(CoupleSurface s, PetscViewer viewer)
+/*
+  State of all beams together, saved by beam 0: time, 1 when alpha2 carries an acceleration, supports (6), coordinates, velocities,
+  loads, that acceleration.
+*/
+#define BEAM_HEAD 8
+static PetscErrorCode StateSize_Beam(void *ctx, PetscInt *n)
 {
-  const Beam *b = (const Beam *)s->ctx;
+  const Beam *b = (const Beam *)ctx;
+  PetscInt nodes = 0;
 
   PetscFunctionBegin;
-  PetscCall(
-      PetscViewerASCIIPrintf(viewer, "  beam %s: %" PetscInt_FMT " disks, %" PetscInt_FMT " markers\n", s->name, b->ndisk, b->n));
+  *n = 0;
+  if (b->beam) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AncfGetNumNodes(b->ancf, &nodes));
+  *n = BEAM_HEAD + 4 * 6 * nodes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy_Beam(CoupleSurface s)
+static PetscErrorCode Load_Beam(void *ctx, const PetscReal *state)
 {
-  Beam *b = (Beam *)s->ctx;
+  Beam *b = (Beam *)ctx;
+  PetscReal *Q;
+  PetscInt n;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree3(b->element, b->xi, b->d1));
-  PetscCall(PetscFree7(b->disk, b->off1, b->off2, b->x0, b->volume, b->depth, b->o));
-  PetscCall(PetscFree6(b->r, b->t, b->len, b->v, b->e, b->ed));
-  PetscCall(PetscFree(s->ctx));
+  if (b->beam) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AncfGetNumNodes(b->ancf, &n));
+  n *= 6;
+  for (int k = 0; k < 6; k++) b->reaction[k / 3][k % 3] = state[2 + k];
+  PetscCall(AncfSetState(b->ancf, state[0], state + BEAM_HEAD, state + BEAM_HEAD + n));
+  if (state[1] != 0.0) PetscCall(AncfSetHistory(b->ancf, state + BEAM_HEAD + 3 * n));
+  PetscCall(AncfGetLoads(b->ancf, &Q));
+  PetscCall(PetscArraycpy(Q, state + BEAM_HEAD + 2 * n, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* TS does not give its memory away: it continues from what is saved here, as it will after Load_Beam(). */
+static PetscErrorCode Save_Beam(void *ctx, PetscReal *state)
+{
+  const Beam *b = (const Beam *)ctx;
+  const PetscReal *e, *v, *A;
+  PetscReal *Q;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  if (b->beam) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AncfGetNumNodes(b->ancf, &n));
+  n *= 6;
+  PetscCall(AncfGetState(b->ancf, &state[0], &e, &v, NULL));
+  PetscCall(AncfGetLoads(b->ancf, &Q));
+  PetscCall(AncfGetHistory(b->ancf, &A));
+  state[1] = A ? 1.0 : 0.0;
+  for (int k = 0; k < 6; k++) state[2 + k] = b->reaction[k / 3][k % 3];
+  PetscCall(PetscArraycpy(state + BEAM_HEAD, e, n));
+  PetscCall(PetscArraycpy(state + BEAM_HEAD + n, v, n));
+  PetscCall(PetscArraycpy(state + BEAM_HEAD + 2 * n, Q, n));
+  if (A) PetscCall(PetscArraycpy(state + BEAM_HEAD + 3 * n, A, n));
+  PetscCall(Load_Beam(ctx, state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View_Beam(void *ctx, PetscViewer viewer)
+{
+  const Beam *b = (const Beam *)ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  beam %" PetscInt_FMT ": %" PetscInt_FMT " elements, %" PetscInt_FMT " disks\n",
+                                   b->beam, b->elements, b->ndisk));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Beam(void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -310,60 +188,73 @@ static void SectionFill(PetscInt dim, PetscReal R, PetscReal dp, PetscReal depth
   }
 }
 
-/* A unit vector normal to t, along the coordinate axis least aligned with it. */
-static void AnyNormal(const PetscReal t[3], PetscReal d1[3])
-{
-  int m = 0;
-  for (int k = 1; k < 3; k++)
-    if (PetscAbsReal(t[k]) < PetscAbsReal(t[m])) m = k;
-  for (int k = 0; k < 3; k++) d1[k] = (k == m ? 1.0 : 0.0) - t[m] * t[k];
-  const PetscReal n = PetscSqrtReal(CoupleDot(d1, d1));
-  for (int k = 0; k < 3; k++) d1[k] /= n;
-}
+/* Arrays of a CoupleHostSpec. */
+typedef struct {
+  PetscInt *rowstart, *node, *section;
+  PetscBool *direction;
+  PetscReal *shape, *slope, *offset, *volume, *depth;
+} Rows;
 
-static PetscErrorCode Allocate(Beam *b, PetscInt persection)
+/* Disk d at arc coordinate s: its element's four vector coordinates and their weights, Eq. 19. */
+static void PlaceDisk(const Beam *b, PetscInt d, PetscReal s, Rows *r)
 {
-  const PetscInt nd = b->ndisk, n = nd * persection, m = 6 * (b->elements + 1);
+  const PetscInt element = PetscMin((PetscInt)(s / b->l), b->elements - 1);
+  const PetscReal xi = s / b->l - (PetscReal)element;
 
-  PetscFunctionBegin;
-  b->n = n;
-  PetscCall(PetscMalloc3(nd, &b->element, nd, &b->xi, 3 * nd, &b->d1));
-  PetscCall(PetscMalloc7(n, &b->disk, n, &b->off1, n, &b->off2, 3 * n, &b->x0, n, &b->volume, n, &b->depth, 3 * n, &b->o));
-  PetscCall(PetscMalloc6(3 * nd, &b->r, 3 * nd, &b->t, nd, &b->len, 3 * n, &b->v, m, &b->e, m, &b->ed));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  AncfShape(xi, b->l, r->shape + 4 * d);
+  AncfShapeX(xi, b->l, r->slope + 4 * d);
+  for (PetscInt j = 0; j < 4; j++) r->node[4 * d + j] = 2 * element + j;
+  r->rowstart[d + 1] = 4 * (d + 1);
 }
 
 /* Disks at (k + 1/2) L/ndisk; every other one turned by half a marker, so that the markers of neighbours interleave. */
-static PetscErrorCode Place(Beam *b, const AncfBeamSpec *spec, const Section *c)
+static void PlaceMarkers(const Beam *b, const AncfBeamSpec *spec, const Section *c, Rows *r)
 {
   const PetscReal L = b->l * (PetscReal)b->elements, ds = L / (PetscReal)b->ndisk;
-  const PetscReal *e;
-  PetscReal w[3], alpha[3], rd[3], rdd[3];
   PetscInt i = 0;
 
-  PetscFunctionBegin;
-  PetscCall(AncfGetState(b->ancf, NULL, &e, NULL, NULL));
+  for (PetscInt j = 0; j < 2 * (b->elements + 1); j++) r->direction[j] = j % 2 ? PETSC_TRUE : PETSC_FALSE;
+  r->rowstart[0] = 0;
   for (PetscInt d = 0; d < b->ndisk; d++) {
     const PetscReal s = ((PetscReal)d + 0.5) * ds,
                     ends = PetscMin(spec->end0 == ANCF_END_FREE ? s : L, spec->end1 == ANCF_END_FREE ? L - s : L);
-    b->element[d] = PetscMin((PetscInt)(s / b->l), b->elements - 1);
-    b->xi[d] = s / b->l - (PetscReal)b->element[d];
+    PlaceDisk(b, d, s, r);
     for (PetscInt j = 0; j < c->n; j++, i++) {
       const PetscReal turn = d % 2 ? c->turn[j] : 0.0;
-      b->disk[i] = d;
-      b->off1[i] = c->o1[j] * PetscCosReal(turn) - c->o2[j] * PetscSinReal(turn);
-      b->off2[i] = c->o1[j] * PetscSinReal(turn) + c->o2[j] * PetscCosReal(turn);
-      b->volume[i] = c->area[j] * ds;
-      b->depth[i] = PetscMin(c->depth[j], ends);
+      r->section[i] = d;
+      r->offset[2 * i] = c->o1[j] * PetscCosReal(turn) - c->o2[j] * PetscSinReal(turn);
+      r->offset[2 * i + 1] = c->o1[j] * PetscSinReal(turn) + c->o2[j] * PetscCosReal(turn);
+      r->volume[i] = c->area[j] * ds;
+      r->depth[i] = PetscMin(c->depth[j], ends);
     }
   }
-  if (b->beam == 0) PetscCall(AncfGetReaction(b->ancf, b->reaction[1]));
-  PetscCall(Extrapolate(b, 0.0, &e));
-  for (PetscInt d = 0; d < b->ndisk; d++) {
-    DiskMotion(b, d, e, w, alpha, rd, rdd);
-    AnyNormal(b->t + 3 * d, b->d1 + 3 * d);
-    Transport(b, b->t + 3 * d, b->d1 + 3 * d);
-  }
+}
+
+static PetscErrorCode CreateSurface(Beam *b, const AncfBeamSpec *spec, PetscInt dim, const Section *c, CoupleSurface *surface)
+{
+  const CoupleHostOps ops = {.getstate = GetState_Beam,
+                             .getloads = GetLoads_Beam,
+                             .advance = Advance_Beam,
+                             .momentum = Momentum_Beam,
+                             .statesize = StateSize_Beam,
+                             .save = Save_Beam,
+                             .load = Load_Beam,
+                             .view = View_Beam,
+                             .destroy = Destroy_Beam};
+  const PetscInt nd = b->ndisk, n = nd * c->n, nn = 2 * (b->elements + 1);
+  CoupleHostSpec host;
+  Rows r;
+  char name[64];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc4(nd + 1, &r.rowstart, 4 * nd, &r.node, n, &r.section, nn, &r.direction));
+  PetscCall(PetscMalloc5(4 * nd, &r.shape, 4 * nd, &r.slope, 2 * n, &r.offset, n, &r.volume, n, &r.depth));
+  PlaceMarkers(b, spec, c, &r);
+  host = (CoupleHostSpec){dim, nn, r.direction, nd, r.rowstart, r.node, r.shape, r.slope, n, r.section, r.offset, r.volume, r.depth};
+  PetscCall(PetscSNPrintf(name, sizeof(name), "beam_%" PetscInt_FMT, b->beam));
+  PetscCall(CoupleSurfaceCreateHost(PETSC_COMM_SELF, name, &host, &ops, b, surface));
+  PetscCall(PetscFree4(r.rowstart, r.node, r.section, r.direction));
+  PetscCall(PetscFree5(r.shape, r.slope, r.offset, r.volume, r.depth));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -376,20 +267,15 @@ surface.
 PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, PetscReal dp, PetscReal depthmax,
                                        CoupleSurface *surface)
 {
-  const CoupleSurfaceOps ops = {GetMarkers_Beam, Kinematics_Beam, ZeroLoads_Beam, ApplyForces_Beam,
-                                Advance_Beam,    Momentum_Beam,   View_Beam,      Destroy_Beam};
   AncfBeamSpec spec;
   Section *c;
   Beam *b;
-  PetscReal *v, *a;
-  char name[64];
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&b));
   PetscCall(PetscNew(&c));
   b->ancf = ancf;
   b->beam = beam;
-  b->dim = dim;
   PetscCall(AncfGetBeam(ancf, beam, &spec, &b->node0, &b->l));
   b->elements = spec.elements;
   b->rhoA = spec.rhoA >= 0.0 ? spec.rhoA : spec.density * PETSC_PI * 0.25 * spec.diameter * spec.diameter;
@@ -402,13 +288,8 @@ PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, P
              "beam %" PetscInt_FMT ": diameter = %g m needs more than 511 markers per disk at sph_dp = %g m", beam,
              (double)spec.diameter, (double)dp);
   b->ndisk = PetscMax(1, (PetscInt)(b->l * (PetscReal)b->elements / dp + 0.5));
-  PetscCall(Allocate(b, c->n));
-  PetscCall(Place(b, &spec, c));
+  if (beam == 0) PetscCall(AncfGetReaction(ancf, b->reaction[1]));
+  PetscCall(CreateSurface(b, &spec, dim, c, surface));
   PetscCall(PetscFree(c));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "beam_%" PetscInt_FMT, beam));
-  PetscCall(CoupleSurfaceCreate(PETSC_COMM_SELF, name, &ops, b, surface));
-  PetscCall(PetscMalloc2(3 * b->n, &v, 3 * b->n, &a));
-  PetscCall(Kinematics_Beam(*surface, 0.0, b->x0, v, a));
-  PetscCall(PetscFree2(v, a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

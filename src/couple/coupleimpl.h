@@ -20,6 +20,8 @@ typedef struct {
   CoupleAudit audit;
 } CoupleSlot;
 
+typedef struct _p_CoupleIteration *CoupleIteration;
+
 struct _p_Couple {
   MPI_Comm comm;
   Sph sph;
@@ -27,13 +29,28 @@ struct _p_Couple {
   PetscInt n, cap;
   PetscReal dtmax;
   PetscBool setup;
-  PetscReal p0[3]; /* momentum at set-up */
-  PetscReal mass;  /* of the fluid, kg; for `left` markers gone */
+  PetscInt maxiterations, iterations,
+      unconverged; /* of the strong coupling: allowed per step; made; steps that missed the tolerance */
+  PetscReal tolerance, relaxation;
+  CoupleIteration iteration; /* made at the first iterated step */
+  PetscReal p0[3];           /* momentum at set-up */
+  PetscReal mass;            /* of the fluid, kg; for `left` markers gone */
   PetscInt left;
   CoupleBalance balance; /* impulses accumulated so far */
 };
 
 extern PetscLogEvent COUPLE_Kinematics, COUPLE_Transfer, COUPLE_Advance;
+
+/* couple.c: every surface's markers at the structures' own time plus ahead (s), to the fluid. */
+extern PetscErrorCode CoupleMoveMarkers(Couple couple, PetscReal ahead);
+
+/* couple.c: forces (3 per marker of the surfaces that are not held) onto the structures; every structure to time t. */
+extern PetscErrorCode CoupleApplyForces(Couple couple, const PetscReal *f);
+extern PetscErrorCode CoupleAdvanceSurfaces(Couple couple, PetscReal t);
+
+/* coupleiterate.c */
+extern PetscErrorCode CoupleIterate(Couple couple, PetscReal t, PetscReal dt);
+extern PetscErrorCode CoupleIterationDestroy(Couple couple);
 
 /* couplebalance.c */
 extern PetscErrorCode CoupleBalanceStart(Couple couple);

@@ -161,6 +161,59 @@ static PetscErrorCode Momentum_Rigid(CoupleSurface s, PetscReal p[3], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the adapter remembers of the last step. */
+#define BODY_MEMORY 20
+static void Memory(Body *b, PetscReal *p[BODY_MEMORY])
+{
+  for (int k = 0; k < 3; k++) {
+    p[k] = &b->F[k], p[3 + k] = &b->T[k], p[6 + k] = &b->A[k];
+    p[9 + k] = &b->alpha[k], p[12 + k] = &b->V0[k], p[15 + k] = &b->omega0[k];
+  }
+  p[18] = &b->dt, p[19] = &b->t0;
+}
+
+/* That, and the solver's time and bodies, which body 0 saves for all. */
+static PetscErrorCode StateSize_Rigid(CoupleSurface s, PetscInt *n)
+{
+  const Body *b = (const Body *)s->ctx;
+  PetscInt pack;
+
+  PetscFunctionBegin;
+  *n = BODY_MEMORY;
+  if (b->body) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RigidGetPackSize(b->rigid, &pack));
+  *n += 1 + pack;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Save_Rigid(CoupleSurface s, PetscReal *state)
+{
+  Body *b = (Body *)s->ctx;
+  PetscReal *p[BODY_MEMORY];
+
+  PetscFunctionBegin;
+  Memory(b, p);
+  for (int k = 0; k < BODY_MEMORY; k++) state[k] = *p[k];
+  if (b->body) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RigidGetTime(b->rigid, &state[BODY_MEMORY]));
+  PetscCall(RigidPack(b->rigid, state + BODY_MEMORY + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Load_Rigid(CoupleSurface s, const PetscReal *state)
+{
+  Body *b = (Body *)s->ctx;
+  PetscReal *p[BODY_MEMORY];
+
+  PetscFunctionBegin;
+  Memory(b, p);
+  for (int k = 0; k < BODY_MEMORY; k++) *p[k] = state[k];
+  if (b->body) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RigidSetTime(b->rigid, state[BODY_MEMORY]));
+  PetscCall(RigidUnpack(b->rigid, state + BODY_MEMORY + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode View_Rigid(CoupleSurface s, PetscViewer viewer)
 {
   const Body *b = (const Body *)s->ctx;
@@ -191,7 +244,8 @@ PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim
                                         CoupleSurface *surface)
 {
   const CoupleSurfaceOps ops = {GetMarkers_Rigid, Kinematics_Rigid, ZeroLoads_Rigid, ApplyForces_Rigid,
-                                Advance_Rigid,    Momentum_Rigid,   View_Rigid,      Destroy_Rigid};
+                                Advance_Rigid,    Momentum_Rigid,   View_Rigid,      Destroy_Rigid,
+                                StateSize_Rigid,  Save_Rigid,       Load_Rigid};
   RigidBodySpec spec;
   PetscInt joints;
   PetscReal *a;

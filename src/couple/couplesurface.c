@@ -11,6 +11,8 @@ PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const Coupl
   CoupleSurface s;
 
   PetscFunctionBegin;
+  PetscCheck(!ops->statesize == !ops->save && !ops->save == !ops->load, comm, PETSC_ERR_ARG_NULL,
+             "surface %s: statesize, save and load must be given together or not at all", name);
   PetscCheck(ops->getmarkers && ops->kinematics && ops->zeroloads && ops->applyforces && ops->advance, comm, PETSC_ERR_ARG_NULL,
              "surface %s: getmarkers, kinematics, zeroloads, applyforces and advance must all be given", name);
   PetscCall(PetscNew(&s));
@@ -117,6 +119,25 @@ static PetscErrorCode Advance_Wall(CoupleSurface s, PetscReal t)
   return PETSC_SUCCESS;
 }
 
+static PetscErrorCode StateSize_Wall(CoupleSurface s, PetscInt *n)
+{
+  (void)s;
+  *n = 1;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Save_Wall(CoupleSurface s, PetscReal *state)
+{
+  *state = ((Wall *)s->ctx)->t;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Load_Wall(CoupleSurface s, const PetscReal *state)
+{
+  ((Wall *)s->ctx)->t = *state;
+  return PETSC_SUCCESS;
+}
+
 static PetscErrorCode View_Wall(CoupleSurface s, PetscViewer viewer)
 {
   const Wall *w = (const Wall *)s->ctx;
@@ -146,7 +167,10 @@ PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscIn
                                 .applyforces = ApplyForces_Wall,
                                 .advance = Advance_Wall,
                                 .view = View_Wall,
-                                .destroy = Destroy_Wall};
+                                .destroy = Destroy_Wall,
+                                .statesize = StateSize_Wall,
+                                .save = Save_Wall,
+                                .load = Load_Wall};
   Wall *w;
 
   PetscFunctionBegin;

@@ -118,12 +118,13 @@ PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ShortRangeFromOptions(Rigid rigid, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode ShortRangeFromOptions(Rigid rigid)
 {
   ShortRange p = rigid->shortrange;
   PetscReal spacing = rigid->spacing;
 
   PetscFunctionBegin;
+  PetscOptionsBegin(rigid->comm, rigid->prefix, "Rigid bodies: short-range forces", "Rigid");
   PetscCall(PetscOptionsReal("-rigid_lubrication_viscosity", "Viscosity for lubrication between bodies, Pa s (0: none)",
                              "RigidSetShortRange", p.viscosity, &p.viscosity, NULL));
   PetscCall(PetscOptionsReal("-rigid_lubrication_cutoff", "Gap Dc beyond which lubrication is left to the fluid, m",
@@ -138,6 +139,7 @@ static PetscErrorCode ShortRangeFromOptions(Rigid rigid, PetscOptionItems *Petsc
                              p.restitution, &p.restitution, NULL));
   PetscCall(PetscOptionsReal("-rigid_shortrange_spacing", "Distance of surface markers of bodies that are no spheres, m",
                              "RigidSetShortRangeSpacing", spacing, &spacing, NULL));
+  PetscOptionsEnd();
   PetscCall(RigidSetShortRange(rigid, &p));
   PetscCall(RigidSetShortRangeSpacing(rigid, spacing));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,8 +165,8 @@ PetscErrorCode RigidSetFromOptions(Rigid rigid)
   PetscCall(PetscOptionsInt("-rigid_substeps", "Steps of the rigid bodies in one step of the fluid", "RigidSetSubsteps", substeps,
                             &substeps, NULL));
   PetscCall(RigidSetSubsteps(rigid, substeps));
-  PetscCall(ShortRangeFromOptions(rigid, PetscOptionsObject));
   PetscOptionsEnd();
+  PetscCall(ShortRangeFromOptions(rigid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -208,6 +210,7 @@ static PetscErrorCode BodySetUp(Rigid rigid, PetscInt i)
   }
   QuatNormalize(b->q);
   RigidBodySetOmega(b, s->omega);
+  RigidTableApply(b, rigid->t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,7 +300,11 @@ PetscErrorCode RigidDestroy(Rigid *rigid)
 {
   PetscFunctionBegin;
   if (!*rigid) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < (*rigid)->n; i++) PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
+  for (PetscInt i = 0; i < (*rigid)->n; i++) {
+    PetscCall(RigidGeometryDestroy(&(*rigid)->body[i].spec.geometry));
+    PetscCall(PetscFree((*rigid)->body[i].tabletime));
+    PetscCall(PetscFree((*rigid)->body[i].table));
+  }
   PetscCall(RigidSystemDestroy(*rigid));
   PetscCall(RigidContactDestroy(&(*rigid)->contact));
   PetscCall(PetscFree((*rigid)->prefix));
@@ -383,6 +390,7 @@ PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t)
 {
   PetscFunctionBegin;
   rigid->t = t;
+  for (PetscInt i = 0; i < rigid->n && rigid->setup; i++) RigidTableApply(&rigid->body[i], t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -514,6 +522,7 @@ static PetscErrorCode RigidSubstep(Rigid rigid, PetscReal h)
     if (!jointed) RigidBodyEnd(rigid, i, h);
   }
   if (rigid->system) PetscCall(RigidSystemEnd(rigid, h));
+  rigid->t += h;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

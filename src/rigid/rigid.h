@@ -93,10 +93,18 @@ FROND_EXTERN PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t);
 FROND_EXTERN PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n);
 FROND_EXTERN PetscErrorCode RigidPack(Rigid rigid, PetscReal state[]);
 FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
-/* Linear and angular acceleration (space frame) from the last applied wrench, m/s^2, rad/s^2. */
+/* Linear and angular acceleration (space frame), m/s^2, rad/s^2, from all wrenches of the last step: applied, weight,
+   short-range and joints; of a prescribed body, the slope of its table. */
 FROND_EXTERN PetscErrorCode RigidGetAcceleration(Rigid rigid, PetscInt body, PetscReal A[3], PetscReal alpha[3]);
 /* Rotation matrix, row major, space = R body. */
 FROND_EXTERN void RigidRotationMatrix(const PetscReal q[4], PetscReal R[9]);
+
+/*
+  A prescribed body's velocity (n x 3, m/s) and angular velocity (n x 3, space frame, rad/s; NULL for none) at n times (s,
+  increasing): linear between them, constant before and after. Replaces the constants of its spec.
+*/
+FROND_EXTERN PetscErrorCode RigidSetMotionTable(Rigid rigid, PetscInt body, PetscInt n, const PetscReal t[],
+                                                const PetscReal velocity[], const PetscReal omega[]);
 
 /* Wrench: force (N) and torque about the centre of mass (N m), space frame, held over the next RigidAdvance(). */
 FROND_EXTERN PetscErrorCode RigidZeroLoads(Rigid rigid);

@@ -129,10 +129,11 @@ static PetscReal PseudoSide(const RigidMesh *m, PetscInt f, int feature, const P
   return n[0] * (x[0] - y[0]) + n[1] * (x[1] - y[1]) + n[2] * (x[2] - y[2]);
 }
 
-PetscReal RigidMeshDistance(const RigidMesh *m, const PetscReal x[3])
+/* Signed distance of x and the surface's closest point; `bound` is an upper bound of the distance that the caller knows, m. */
+PetscReal RigidMeshClosest(const RigidMesh *m, const PetscReal x[3], PetscReal bound, PetscReal closest[3])
 {
   PetscInt stack[STACK], depth = 0;
-  PetscReal best = PETSC_MAX_REAL, side = 1.;
+  PetscReal best = bound < 1.e150 ? bound * bound : PETSC_MAX_REAL, side = 1.;
   stack[depth++] = 0;
   while (depth) {
     const RigidTreeNode *n = &m->node[stack[--depth]];
@@ -146,6 +147,7 @@ PetscReal RigidMeshDistance(const RigidMesh *m, const PetscReal x[3])
         for (int k = 0; k < 3; k++) d2 += (x[k] - y[k]) * (x[k] - y[k]);
         if (d2 < best) {
           best = d2;
+          for (int k = 0; k < 3; k++) closest[k] = y[k];
           side = PseudoSide(m, f, feature, y, x);
         }
       }
@@ -157,4 +159,10 @@ PetscReal RigidMeshDistance(const RigidMesh *m, const PetscReal x[3])
     }
   }
   return side < 0. ? -PetscSqrtReal(best) : PetscSqrtReal(best);
+}
+
+PetscReal RigidMeshDistance(const RigidMesh *m, const PetscReal x[3])
+{
+  PetscReal y[3];
+  return RigidMeshClosest(m, x, PETSC_MAX_REAL, y);
 }

@@ -34,7 +34,7 @@ struct _p_RigidSystem {
   PetscInt *start, *entry; /* rows of body i: entry[start[i] .. start[i + 1]), 2 row + end */
   PetscReal *wrench;       /* bodies x 6 */
   RigidBody *saved;        /* bodies */
-  PetscReal *value;        /* matrix values of one row */
+  PetscScalar *value;      /* matrix values of one row */
   PetscInt *column;
   Mat A;
   KSP ksp;
@@ -207,11 +207,11 @@ static PetscErrorCode SystemAssemble(Rigid rigid, const RigidRow *row, PetscReal
       for (PetscInt p = i == RIGID_GROUND ? 0 : s->start[i]; i != RIGID_GROUND && p < s->start[i + 1]; p++) {
         const PetscReal *W = s->W + 6 * s->entry[p];
         s->column[n] = s->entry[p] / 2;
-        s->value[n] = 0.;
+        PetscReal dot = 0.;
         if (s->active[r] && s->active[s->column[n]])
-          for (int k = 0; k < 6; k++) s->value[n] += J[k] * W[k];
-        if (s->column[n] == r) diag += s->value[n];
-        n++;
+          for (int k = 0; k < 6; k++) dot += J[k] * W[k];
+        if (s->column[n] == r) diag += dot;
+        s->value[n++] = dot;
       }
     }
     s->column[n] = r;
@@ -444,6 +444,20 @@ static void FinishJoints(Rigid rigid, PetscReal h)
   }
 }
 
+/* Further on, the constraints have several solutions, and Newton may find the wrong one. */
+static PetscErrorCode CheckTurn(Rigid rigid, PetscInt i, PetscReal h)
+{
+  PetscReal w[3];
+
+  PetscFunctionBegin;
+  RigidBodyOmega(&rigid->body[i], rigid->body[i].q, w);
+  PetscCheck(h * Vec3Norm(w) <= 1., rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT
+             ": turns by %g rad in a step of %g s at t = %g s; a joined body may turn by 1 rad: raise -rigid_substeps",
+             i, (double)(h * Vec3Norm(w)), (double)h, (double)rigid->t);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Stage 1 of a step of h > 0. */
 PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
 {
@@ -457,6 +471,7 @@ PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
   for (PetscInt i = 0; i < rigid->n; i++) {
     if (s->start[i + 1] == s->start[i]) continue;
     PetscCall(RigidBodyCheckLoad(rigid, i));
+    PetscCall(CheckTurn(rigid, i, h));
     if (rigid->body[i].spec.motion != RIGID_FREE) PetscCall(RigidBodyBegin(rigid, i, h));
     s->saved[i] = rigid->body[i];
   }

@@ -10,12 +10,6 @@
 #include <stdlib.h>
 
 typedef struct {
-  PetscReal lo, hi;
-  PetscInt body;
-  PetscBool ghost;
-} Interval;
-
-typedef struct {
   PetscInt i, j;
 } Pair;
 
@@ -31,8 +25,9 @@ struct _p_RigidContact {
   PetscReal *radius;     /* of each body's bounding sphere, m */
   RigidMarkers *surface; /* of each body, body frame; empty for spheres */
   PetscInt njoined;
-  Pair *joined;       /* sorted */
-  Interval *interval; /* 2 n */
+  Pair *joined;                 /* sorted */
+  PetscReal small;              /* bodies of larger radius, walls say, are tried against all others, m */
+  PetscInt nhead, *head, *next; /* grid of the others: first body of a cell, next body in it */
   PetscInt npairs, npairalloc;
   Pair *pair;
   PetscInt n, nalloc;
@@ -74,13 +69,6 @@ static int ComparePairs(const void *pa, const void *pb)
   return a->j < b->j ? -1 : (a->j > b->j);
 }
 
-static int CompareIntervals(const void *pa, const void *pb)
-{
-  const Interval *a = (const Interval *)pa, *b = (const Interval *)pb;
-  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
-  return a->body < b->body ? -1 : (a->body > b->body);
-}
-
 static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spacing, RigidContact *contact)
 {
   RigidContact c;
@@ -90,7 +78,7 @@ static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spac
   *contact = c;
   c->reach = reach;
   c->nbodies = rigid->n;
-  PetscCall(PetscMalloc3((size_t)rigid->n, &c->radius, (size_t)(2 * rigid->n), &c->interval, (size_t)rigid->n, &c->G));
+  PetscCall(PetscMalloc3((size_t)rigid->n, &c->radius, (size_t)rigid->n, &c->next, (size_t)rigid->n, &c->G));
   PetscCall(PetscCalloc1((size_t)rigid->n, &c->surface));
   PetscCall(PetscMalloc1((size_t)rigid->njoints, &c->joined));
   for (PetscInt j = 0; j < rigid->njoints; j++) {
@@ -106,6 +94,19 @@ static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spac
                "-rigid_shortrange_spacing %g m: must be > 0, as body %" PetscInt_FMT " is a %s", (double)spacing, i,
                RigidShapeName(s->shape));
     PetscCall(RigidSurfacePoints(s, rigid->dim, spacing, &c->surface[i]));
+  }
+  if (rigid->n) { /* four times the median radius */
+    PetscReal *sorted;
+    PetscCall(PetscMalloc1((size_t)rigid->n, &sorted));
+    PetscCall(PetscArraycpy(sorted, c->radius, rigid->n));
+    PetscCall(PetscSortReal(rigid->n, sorted));
+    c->small = 4. * sorted[rigid->n / 2];
+    for (PetscInt i = rigid->n - 1; i >= 0; i--)
+      if (sorted[i] <= c->small) {
+        c->small = sorted[i];
+        break;
+      }
+    PetscCall(PetscFree(sorted));
   }
   for (PetscInt i = 0; i < rigid->n; i++)
     for (int k = 0; k < 3; k++)
@@ -126,11 +127,12 @@ PetscErrorCode RigidContactDestroy(RigidContact *contact)
   for (int k = 0; k < 2; k++) PetscCall(PetscFree(c->near[k].x));
   for (int k = 0; k < 2; k++) PetscCall(PetscFree(c->near[k].volume));
   PetscCall(PetscFree(c->joined));
+  PetscCall(PetscFree(c->head));
   PetscCall(PetscFree(c->pair));
   PetscCall(PetscFree(c->contact));
   for (PetscInt i = 0; i < c->nbodies; i++) PetscCall(PetscFree(c->surface[i].x));
   for (PetscInt i = 0; i < c->nbodies; i++) PetscCall(PetscFree(c->surface[i].volume));
-  PetscCall(PetscFree3(c->radius, c->interval, c->G));
+  PetscCall(PetscFree3(c->radius, c->next, c->G));
   PetscCall(PetscFree(c->surface));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -174,23 +176,87 @@ static PetscErrorCode AddPair(Rigid rigid, RigidContact c, PetscInt a, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs whose bounding spheres are within reach, sorted: sweep along x, in a periodic direction with copies one period on. */
+/* Grid of cells no smaller than the reach of small bodies and no more than 8 n in number; the period or the bodies' box. */
+static void GridSize(Rigid rigid, const RigidContact c, PetscReal lo[3], PetscReal cell[3], PetscInt n[3])
+{
+  const PetscInt most = 8 * rigid->n + 8;
+  PetscReal size = 2. * c->small + c->reach, length[3];
+  for (int k = 0; k < 3; k++) {
+    PetscReal hi = 0.;
+    lo[k] = 0.;
+    for (PetscInt i = 0; i < rigid->n && rigid->period[k] == 0.; i++) {
+      lo[k] = i ? PetscMin(lo[k], rigid->body[i].X[k]) : rigid->body[i].X[k];
+      hi = i ? PetscMax(hi, rigid->body[i].X[k]) : rigid->body[i].X[k];
+    }
+    length[k] = rigid->period[k] > 0. ? rigid->period[k] : hi - lo[k];
+  }
+  do {
+    PetscReal total = 1.;
+    for (int k = 0; k < 3; k++) {
+      n[k] = PetscMax(1, (PetscInt)PetscMin(length[k] / size, 1.e6));
+      cell[k] = length[k] > 0. ? length[k] / (PetscReal)n[k] : 1.;
+      total *= (PetscReal)n[k];
+    }
+    if (total <= (PetscReal)most) return;
+    size *= 1.26;
+  } while (PETSC_TRUE);
+}
+
+static void GridCell(Rigid rigid, const PetscReal X[3], const PetscReal lo[3], const PetscReal cell[3], const PetscInt n[3],
+                     PetscInt id[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const PetscReal L = rigid->period[k], x = L > 0. ? X[k] - L * PetscFloorReal(X[k] / L) : X[k] - lo[k];
+    id[k] = PetscMax(0, PetscMin(n[k] - 1, (PetscInt)(x / cell[k])));
+  }
+}
+
+/* Bodies of the 27 cells around that of body i which come before it in the lists built so far. */
+static PetscErrorCode GridNeighbours(Rigid rigid, RigidContact c, PetscInt i, const PetscInt id[3], const PetscInt n[3])
+{
+  PetscFunctionBegin;
+  for (int m = 0; m < 27; m++) {
+    PetscInt at[3] = {id[0] + m % 3 - 1, id[1] + m / 3 % 3 - 1, id[2] + m / 9 - 1};
+    PetscBool outside = PETSC_FALSE;
+    for (int k = 0; k < 3; k++) {
+      if (rigid->period[k] > 0.)
+        at[k] = (at[k] + n[k]) % n[k];
+      else if (at[k] < 0 || at[k] >= n[k])
+        outside = PETSC_TRUE;
+    }
+    if (outside) continue;
+    for (PetscInt j = c->head[at[0] + n[0] * (at[1] + n[1] * at[2])]; j >= 0; j = c->next[j]) PetscCall(AddPair(rigid, c, i, j));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs whose bounding spheres are within reach, sorted. */
 static PetscErrorCode FindPairs(Rigid rigid, RigidContact c)
 {
-  PetscInt n = 0, m = 0;
+  PetscReal lo[3], cell[3];
+  PetscInt n[3], total, m = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < rigid->n; i++) {
-    const PetscReal L = rigid->period[0], x = rigid->body[i].X[0], r = c->radius[i] + .5 * c->reach;
-    const PetscReal folded = L > 0. ? x - L * PetscFloorReal(x / L) : x;
-    c->interval[n++] = (Interval){folded - r, folded + r, i, PETSC_FALSE};
-    if (L > 0.) c->interval[n++] = (Interval){folded + L - r, folded + L + r, i, PETSC_TRUE};
+  GridSize(rigid, c, lo, cell, n);
+  total = n[0] * n[1] * n[2];
+  if (total > c->nhead) {
+    PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)total, &c->head));
+    c->nhead = total;
   }
-  qsort(c->interval, (size_t)n, sizeof(Interval), CompareIntervals);
+  for (PetscInt k = 0; k < total; k++) c->head[k] = -1;
   c->npairs = 0;
-  for (PetscInt a = 0; a < n; a++)
-    for (PetscInt b = a + 1; b < n && c->interval[b].lo <= c->interval[a].hi; b++)
-      if (!c->interval[a].ghost || !c->interval[b].ghost) PetscCall(AddPair(rigid, c, c->interval[a].body, c->interval[b].body));
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    PetscInt id[3], at;
+    if (c->radius[i] > c->small) {
+      for (PetscInt j = 0; j < rigid->n; j++) PetscCall(AddPair(rigid, c, i, j));
+      continue;
+    }
+    GridCell(rigid, rigid->body[i].X, lo, cell, n, id);
+    PetscCall(GridNeighbours(rigid, c, i, id, n));
+    at = id[0] + n[0] * (id[1] + n[1] * id[2]);
+    c->next[i] = c->head[at];
+    c->head[at] = i;
+  }
   if (c->npairs) qsort(c->pair, (size_t)c->npairs, sizeof(Pair), ComparePairs);
   for (PetscInt k = 0; k < c->npairs; k++)
     if (m == 0 || ComparePairs(&c->pair[k], &c->pair[m - 1])) c->pair[m++] = c->pair[k];

@@ -44,6 +44,7 @@ extern PetscReal RigidGeometryDistance(RigidGeometry g, const PetscReal x[3]);
 extern PetscErrorCode RigidMeshReadSTL(MPI_Comm comm, const char filename[], PetscReal scale, PetscInt *nf, PetscReal **corners);
 extern PetscErrorCode RigidMeshTopology(MPI_Comm comm, const char name[], RigidMesh *m);
 extern PetscErrorCode RigidMeshTree(RigidMesh *m);
+extern PetscReal RigidMeshClosest(const RigidMesh *m, const PetscReal x[3], PetscReal bound, PetscReal closest[3]);
 extern PetscReal RigidMeshDistance(const RigidMesh *m, const PetscReal x[3]);
 extern void RigidPrincipalAxes(const PetscReal A[9], PetscReal J[3], PetscReal q[4]);
 

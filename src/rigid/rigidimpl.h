@@ -16,6 +16,8 @@ typedef struct {
   PetscReal F[3], T[3];   /* wrench collected for the next step, N, N m */
   PetscReal Fs[3], Ts[3]; /* short-range wrench of the present half step */
   PetscReal Fused[3], Tused[3]; /* all wrenches of the last step but gravity's */
+  PetscInt ntable;              /* prescribed: motion table, times and n x 6 velocities; NULL for constants */
+  PetscReal *tabletime, *table;
 } RigidBody;
 
 #define RIGID_MAX_ROWS 7
@@ -103,6 +105,11 @@ extern PetscErrorCode RigidSurfacePoints(const RigidBodySpec *s, PetscInt dim, P
 extern PetscErrorCode RigidContactSetUp(Rigid rigid);
 extern PetscErrorCode RigidContactDestroy(RigidContact *c);
 extern PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick);
+
+/* rigidtable.c */
+extern void RigidTableVelocity(const RigidBody *b, PetscReal t, PetscReal v[6], PetscReal a[6]);
+extern void RigidTableIntegral(const RigidBody *b, PetscReal t0, PetscReal t1, PetscReal d[6]);
+extern void RigidTableApply(RigidBody *b, PetscReal t);
 
 /* rigidstep.c */
 extern void RigidBodyMobility(const RigidBody *b, const PetscReal J[6], PetscReal W[6]);

@@ -21,8 +21,8 @@ typedef struct {
 
 typedef struct {
   PetscInt n, nalloc;
-  PetscReal *x, *depth, *weight; /* n x 3, n, n; weight: part of the cell inside */
-  PetscReal total;               /* weight of all cells of the body */
+  PetscReal *x, *normal, *depth, *weight; /* n x 3, n x 3, n, n; weight: part of the cell inside */
+  PetscReal total;                        /* weight of all cells of the body */
 } Cells;
 
 static PetscErrorCode BucketsCreate(Buckets *b, PetscInt dim, PetscReal dp, const PetscReal lo[], const PetscReal hi[])
@@ -75,15 +75,18 @@ static PetscInt Nearest(const Buckets *b, const RigidMarkers *m, const PetscReal
   return best;
 }
 
-/* Adds a marker at x unless one is too close. */
-static PetscErrorCode TryMarker(Buckets *b, RigidMarkers *m, const PetscReal x[3])
+static PetscBool IsFree(const Buckets *b, const RigidMarkers *m, const PetscReal x[3])
 {
   PetscReal d2;
+  (void)Nearest(b, m, x, 1, &d2);
+  return d2 < PetscSqr(CLOSEST * b->dp) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+static PetscErrorCode AddMarker(Buckets *b, RigidMarkers *m, const PetscReal x[3])
+{
   PetscInt id[3], bucket;
 
   PetscFunctionBegin;
-  (void)Nearest(b, m, x, 1, &d2);
-  if (d2 < PetscSqr(CLOSEST * b->dp)) PetscFunctionReturn(PETSC_SUCCESS);
   if (m->n == b->nnext) {
     b->nnext = 2 * b->nnext + 256;
     PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)b->nnext, &b->next));
@@ -93,6 +96,39 @@ static PetscErrorCode TryMarker(Buckets *b, RigidMarkers *m, const PetscReal x[3
   b->next[m->n] = b->head[bucket];
   b->head[bucket] = m->n;
   PetscCall(RigidMarkersAdd(m, x[0], x[1], x[2], 0.));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Depth of x, no deeper than `bound` from the surface, and the outward normal there; 0 on the medial surface of a composite. */
+static PetscReal DepthAndNormal(const RigidBodySpec *s, PetscInt dim, PetscReal dp, const PetscReal x[3], PetscReal bound,
+                                PetscReal n[3])
+{
+  PetscReal y[3], d;
+  for (int k = 0; k < 3; k++) n[k] = 0.;
+  if (s->shape != RIGID_MESH) {
+    d = RigidShapeDistance(s, x);
+    if (-d < bound) (void)RigidShapeNormal(s, dim, x, 1.e-4 * dp, n);
+    return -d;
+  }
+  d = RigidMeshClosest(&s->geometry->mesh, x, bound, y);
+  for (int k = 0; k < 3 && d != 0.; k++) n[k] = (x[k] - y[k]) / d;
+  return -d;
+}
+
+static PetscErrorCode AddCell(Cells *c, const PetscReal x[3], const PetscReal normal[3], PetscReal depth, PetscReal weight)
+{
+  PetscFunctionBegin;
+  if (c->n == c->nalloc) {
+    c->nalloc = 2 * c->nalloc + 1024;
+    PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)c->nalloc, &c->x));
+    PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)c->nalloc, &c->normal));
+    PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)c->nalloc, &c->depth));
+    PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)c->nalloc, &c->weight));
+  }
+  PetscCall(PetscArraycpy(&c->x[3 * c->n], x, 3));
+  PetscCall(PetscArraycpy(&c->normal[3 * c->n], normal, 3));
+  c->depth[c->n] = depth;
+  c->weight[c->n++] = weight;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,42 +147,23 @@ static PetscErrorCode GatherCells(Cells *c, const RigidBodySpec *s, PetscInt dim
     least = PetscMin(least, h[k]);
   }
   for (PetscInt iz = 0; iz < n[2]; iz++)
-    for (PetscInt iy = 0; iy < n[1]; iy++)
+    for (PetscInt iy = 0; iy < n[1]; iy++) {
+      PetscReal bound = PETSC_MAX_REAL; /* a distance changes by h at most from cell to cell */
       for (PetscInt ix = 0; ix < n[0]; ix++) {
         const PetscReal x[3] = {lo[0] + h[0] * ((PetscReal)ix + .5), lo[1] + h[1] * ((PetscReal)iy + .5),
                                 dim == 2 ? 0. : lo[2] + h[2] * ((PetscReal)iz + .5)};
-        const PetscReal depth = -RigidShapeDistance(s, x), w = PetscMin(1., .5 + depth / least);
-        if (w <= 0.) continue;
-        c->total += w;
-        if (depth > bottom) continue;
-        if (c->n == c->nalloc) {
-          c->nalloc = 2 * c->nalloc + 1024;
-          PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)c->nalloc, &c->x));
-          PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)c->nalloc, &c->depth));
-          PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)c->nalloc, &c->weight));
-        }
-        PetscCall(PetscArraycpy(&c->x[3 * c->n], x, 3));
-        c->depth[c->n] = depth;
-        c->weight[c->n++] = w;
+        PetscReal normal[3];
+        const PetscReal depth = DepthAndNormal(s, dim, dp, x, bound, normal), w = PetscMin(1., .5 + depth / least);
+        const PetscReal far =
+            depth > 0. ? depth - bottom : -depth - .5 * least; /* so many cells to come are outside or too deep too */
+        const PetscInt skip = far > h[0] ? PetscMin((PetscInt)(far / h[0] * (1. - 1.e-9)), n[0] - 1 - ix) : 0;
+        bound = (PetscAbsReal(depth) + h[0] * (PetscReal)(skip + 1)) * SLACK;
+        ix += skip;
+        if (w > 0.) c->total += w * (PetscReal)(skip + 1);
+        if (w > 0. && depth <= bottom) PetscCall(AddCell(c, x, normal, depth, w));
       }
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* y: x moved along the normal to depth `target`; false where no point of that depth lies that way. */
-static PetscBool MoveToDepth(const RigidBodySpec *s, PetscInt dim, PetscReal dp, const PetscReal x[3], PetscReal depth,
-                             PetscReal target, PetscReal y[3])
-{
-  PetscReal g[3] = {0., 0., 0.}, norm;
-  for (PetscInt k = 0; k < dim; k++) {
-    PetscReal p[3] = {x[0], x[1], x[2]}, m[3] = {x[0], x[1], x[2]};
-    p[k] += 1.e-4 * dp;
-    m[k] -= 1.e-4 * dp;
-    g[k] = RigidShapeDistance(s, p) - RigidShapeDistance(s, m);
-  }
-  norm = Vec3Norm(g);
-  if (norm == 0.) return PETSC_FALSE;
-  for (int k = 0; k < 3; k++) y[k] = x[k] + (depth - target) * g[k] / norm;
-  return PetscAbsReal(-RigidShapeDistance(s, y) - target) < 1.e-2 * dp ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscErrorCode CellVolumes(const Buckets *b, RigidMarkers *m, const Cells *c, PetscReal volume)
@@ -165,7 +182,7 @@ static PetscErrorCode CellVolumes(const Buckets *b, RigidMarkers *m, const Cells
 PetscErrorCode RigidPackMarkers(RigidMarkers *m, const RigidBodySpec *s, PetscInt dim, PetscReal dp, PetscReal depthmax)
 {
   const PetscInt layers = (PetscInt)PetscFloorReal(PetscMin(depthmax / dp * SLACK + .5, 1.e6));
-  Cells c = {0, 0, NULL, NULL, NULL, 0.};
+  Cells c = {0, 0, NULL, NULL, NULL, NULL, 0.};
   Buckets b;
   PetscReal deepest = 0.;
 
@@ -175,17 +192,20 @@ PetscErrorCode RigidPackMarkers(RigidMarkers *m, const RigidBodySpec *s, PetscIn
   for (PetscInt i = 0; i < c.n; i++) deepest = PetscMax(deepest, c.depth[i]);
   for (PetscInt k = 0; k < layers && (PetscReal)k * dp < deepest; k++)
     for (PetscInt i = 0; i < c.n; i++) {
+      const PetscReal target = ((PetscReal)k + .5) * dp;
       PetscReal y[3];
       if (c.depth[i] <= (PetscReal)k * dp || c.depth[i] > (PetscReal)(k + 1) * dp) continue;
-      if (MoveToDepth(s, dim, dp, &c.x[3 * i], c.depth[i], ((PetscReal)k + .5) * dp, y)) PetscCall(TryMarker(&b, m, y));
+      for (int d = 0; d < 3; d++) y[d] = c.x[3 * i + d] + (c.depth[i] - target) * c.normal[3 * i + d];
+      if (IsFree(&b, m, y) && PetscAbsReal(RigidShapeDistance(s, y) + target) < 1.e-2 * dp) PetscCall(AddMarker(&b, m, y));
     }
   for (PetscInt i = 0; i < c.n; i++)
-    if (c.depth[i] > .25 * dp) PetscCall(TryMarker(&b, m, &c.x[3 * i]));
+    if (c.depth[i] > .25 * dp && IsFree(&b, m, &c.x[3 * i])) PetscCall(AddMarker(&b, m, &c.x[3 * i]));
   PetscCheck(m->n > 0, s->geometry->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "A %s that is nowhere %g m deep cannot be marked at spacing dp = %g m", RigidShapeName(s->shape), .25 * (double)dp,
              (double)dp);
   PetscCall(CellVolumes(&b, m, &c, s->geometry->volume));
   PetscCall(PetscFree(c.x));
+  PetscCall(PetscFree(c.normal));
   PetscCall(PetscFree(c.depth));
   PetscCall(PetscFree(c.weight));
   PetscCall(PetscFree(b.head));

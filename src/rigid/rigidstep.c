@@ -104,6 +104,14 @@ void RigidBodyAcceleration(Rigid rigid, const RigidBody *b, PetscReal A[3], Pets
 {
   PetscReal w[3], Jw[3], gyro[3], weight[3], tilt[3], S[9], rhs[3];
   for (int k = 0; k < 3; k++) A[k] = alpha[k] = 0.;
+  if (b->spec.motion == RIGID_PRESCRIBED) {
+    PetscReal v[6], a[6];
+    RigidTableVelocity(b, rigid->t, v, a);
+    for (int k = 0; k < 3; k++) {
+      A[k] = a[k];
+      alpha[k] = a[3 + k];
+    }
+  }
   if (b->spec.motion != RIGID_FREE) return;
   RigidBodyWeight(rigid, b, weight, tilt);
   RigidBodyOmega(b, b->q, w);
@@ -245,15 +253,14 @@ PetscErrorCode RigidBodyBegin(Rigid rigid, PetscInt i, PetscReal dt)
     RigidBodyKickApplied(rigid, b, .5 * dt);
     PetscCall(RigidBodyDrift(rigid, i, dt));
   } else if (b->spec.motion == RIGID_PRESCRIBED) {
-    PetscReal v[3], e[4], qn[4];
-    for (int k = 0; k < 3; k++) {
-      b->X[k] += dt * b->V[k];
-      v[k] = dt * b->w[k];
-    }
+    PetscReal d[6], *v = d + 3, e[4], qn[4];
+    RigidTableIntegral(b, rigid->t, rigid->t + dt, d);
+    for (int k = 0; k < 3; k++) b->X[k] += d[k];
     QuatExp(v, e);
     QuatMult(e, b->q, qn);
     QuatNormalize(qn);
     for (int k = 0; k < 4; k++) b->q[k] = qn[k];
+    RigidTableApply(b, rigid->t + dt);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

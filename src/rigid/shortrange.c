@@ -55,11 +55,17 @@ PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, Petsc
   return k * d * PetscSqrtReal(d) - alpha * PetscSqrtReal(m * k * PetscSqrtReal(d)) * dsdt;
 }
 
-/* 2 dmax/v int_0^1 dx/sqrt(1 - x^(5/2)), dmax = (5 m v^2/(4 k))^(2/5); the integral is sqrt(pi) Gamma(7/5)/Gamma(9/10). */
+/* m v^2/2 = (2/5) k d^(5/2). */
+PetscReal ShortRangeOverlap(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v)
+{
+  const PetscReal k = 4. / 3. * p->modulus * PetscSqrtReal(R);
+  return PetscPowReal(1.25 * m * v * v / k, .4);
+}
+
+/* 2 d/v int_0^1 dx/sqrt(1 - x^(5/2)), d the largest overlap; the integral is sqrt(pi) Gamma(7/5)/Gamma(9/10). */
 PetscReal ShortRangeContactTime(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v)
 {
-  const PetscReal k = 4. / 3. * p->modulus * PetscSqrtReal(R), d = PetscPowReal(1.25 * m * v * v / k, .4);
-  return 2. * d / v * PetscSqrtReal(PETSC_PI) * tgamma(1.4) / tgamma(.9);
+  return 2. * ShortRangeOverlap(p, R, m, v) / v * PetscSqrtReal(PETSC_PI) * tgamma(1.4) / tgamma(.9);
 }
 
 PetscReal ShortRangeCriticalStokes(const ShortRange *p)

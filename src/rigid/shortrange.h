@@ -36,6 +36,8 @@ FROND_EXTERN PetscReal ShortRangeSphere(const ShortRange *p, PetscReal ai, Petsc
 FROND_EXTERN PetscReal ShortRangeMarkers(const ShortRange *p, PetscReal h, PetscReal s);
 /* Repulsion, N: R = 1/(1/ai + 1/aj) (m), m reduced mass (kg), gap s (m), dsdt its rate (m/s). */
 FROND_EXTERN PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, PetscReal s, PetscReal dsdt);
+/* Largest overlap of an elastic collision at speed v, m (Hertz); below the roughness the smooth surfaces never meet. */
+FROND_EXTERN PetscReal ShortRangeOverlap(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v);
 /* Duration of an elastic collision at speed v, s (Hertz): resolve it by 20 steps or more. */
 FROND_EXTERN PetscReal ShortRangeContactTime(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v);
 /* St_c = integral of the factor of Eq. 31 over s_min < s < Dc: the share of St that the approach to contact uses up. */

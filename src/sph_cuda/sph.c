@@ -65,36 +65,12 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeArrays(Sph sph)
-{
-  PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) {
-    PetscCall(PetscFree(sph->st.x[k]));
-    PetscCall(PetscFree(sph->st.v[k]));
-    PetscCall(PetscFree(sph->stn.x[k]));
-    PetscCall(PetscFree(sph->stn.v[k]));
-    PetscCall(PetscFree(sph->rate.a[k]));
-    PetscCall(PetscFree(sph->rate.dv[k]));
-    PetscCall(PetscFree(sph->ab[k]));
-  }
-  PetscCall(PetscFree(sph->st.s));
-  PetscCall(PetscFree(sph->stn.s));
-  PetscCall(PetscFree(sph->rate.ds));
-  PetscCall(PetscFree(sph->m));
-  PetscCall(PetscFree(sph->wallratio));
-  PetscCall(PetscFree(sph->group));
-  PetscCall(PetscFree(sph->id));
-  PetscCall(PetscFree(sph->slot));
-  PetscCall(PetscFree(sph->groupstart));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SphDestroy(Sph *sph)
 {
   PetscFunctionBegin;
   if (!*sph) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*sph)->ops) PetscCall((*(*sph)->ops->destroy)(*sph));
-  PetscCall(FreeArrays(*sph));
+  PetscCall(SphFreeArrays(*sph));
   PetscCall(PetscFree(*sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -197,6 +173,7 @@ PetscErrorCode SphSetUp(Sph sph)
       sph->wallratio[i] = SphWallRatio(&sph->par, sph->wallratio[i]);
     }
   }
+  PetscCall(SphAllocateArrays(sph, sph->ops == &SphOps_CPU ? PETSC_TRUE : PETSC_FALSE));
   PetscCall((*sph->ops->setup)(sph));
   sph->setup = PETSC_TRUE;
   PetscCall((*sph->ops->build)(sph));
@@ -226,14 +203,15 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
 /*@
   SphComputeTimeStep - Stable step from the acoustic, force and viscous limits, or the fixed one.
 
-  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21. The artificial
-  viscosity counts as nu = alpha c_s h/(2 (dim + 2)): Monaghan, Rep. Prog. Phys. 68 (2005), Sect. 7.
-  Errors: a fixed step above the limit at the first step; later it is a warning, once.
+  dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21.
+The artificial viscosity counts as nu = alpha c_s h/(2 (dim + 2)): Monaghan, Rep. Prog. Phys. 68 (2005), Sect. 7. Errors: a fixed
+step above the limit at the first step; later it is a warning, once.
 @*/
 PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
 {
   const SphParams *p = &sph->par;
-  const PetscReal nu = p->viscosity == SPH_VISCOSITY_ARTIFICIAL ? p->alpha * p->cs * p->h / (2.0 * (PetscReal)(p->dim + 2)) : p->mu / p->rho0;
+  const PetscReal nu =
+      p->viscosity == SPH_VISCOSITY_ARTIFICIAL ? p->alpha * p->cs * p->h / (2.0 * (PetscReal)(p->dim + 2)) : p->mu / p->rho0;
   PetscReal vmax, amax, limit;
   const char *which = "acoustic";
 
@@ -287,6 +265,23 @@ PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
 }
 
 /*@
+  SphStepEvaluate - Second-stage rates and boundary forces for the boundary motion as set now; may be repeated with another
+  motion before SphStepEnd(), which then takes the last ones. For couplings that iterate on the forces.
+
+  Errors: outside a step; with the Verlet integrator, which has no second stage.
+@*/
+PetscErrorCode SphStepEvaluate(Sph sph)
+{
+  PetscFunctionBegin;
+  PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEvaluate() was called without SphStepBegin()");
+  PetscCheck(sph->par.integrator != SPH_INTEGRATOR_VERLET, sph->comm, PETSC_ERR_SUP,
+             "sph_integrator = verlet has no second stage to evaluate again: use rk2 or symplectic");
+  PetscCall(EvaluateRates(sph));
+  sph->evaluated = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   SphStepEnd - Second stage: rates and boundary forces at t + dt/2 (verlet: those at t stay), fluid state at t + dt.
 
   Errors: PETSC_ERR_FP naming field, marker, step and time when a value is not finite (every -sph_check_every steps).
@@ -295,7 +290,8 @@ PetscErrorCode SphStepEnd(Sph sph)
 {
   PetscFunctionBegin;
   PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEnd() was called without SphStepBegin()");
-  if (sph->par.integrator != SPH_INTEGRATOR_VERLET) PetscCall(EvaluateRates(sph));
+  if (sph->par.integrator != SPH_INTEGRATOR_VERLET && !sph->evaluated) PetscCall(EvaluateRates(sph));
+  sph->evaluated = PETSC_FALSE;
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
   sph->verletspan = sph->verletstep % SPH_VERLET_EVERY ? sph->dt + sph->dtold : 0.0;
   sph->verletstep++;

@@ -118,6 +118,7 @@ FROND_EXTERN PetscErrorCode SphGetCounts(Sph sph, PetscInt *fluid, PetscInt *bou
 /* The largest stable time step now (acoustic, force and viscous limits), or the fixed one after checking it. */
 FROND_EXTERN PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt);
 FROND_EXTERN PetscErrorCode SphStepBegin(Sph sph, PetscReal dt);
+FROND_EXTERN PetscErrorCode SphStepEvaluate(Sph sph);
 FROND_EXTERN PetscErrorCode SphStepEnd(Sph sph);
 FROND_EXTERN PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step);
 
@@ -137,6 +138,15 @@ typedef struct {
 FROND_EXTERN PetscErrorCode SphGetFields(Sph sph, const SphFields *f);
 /* Overwrite fields (x, v, rho as given, others ignored); for initial conditions, restart and fault tests. */
 FROND_EXTERN PetscErrorCode SphSetFields(Sph sph, const SphFields *f);
+
+/*
+  The whole state between two steps as bytes, for rolling back a step or restarting: the run goes on with the same bits after
+  SphRestoreState() as it did after SphSaveState(). bytes: what SphGetStateSize() gives right before saving. The buffer fits the
+  same scene, backend and machine only. Errors: PETSC_ERR_ARG_SIZ when the markers or the buffer's size do not fit.
+*/
+FROND_EXTERN PetscErrorCode SphGetStateSize(Sph sph, size_t *bytes);
+FROND_EXTERN PetscErrorCode SphSaveState(Sph sph, size_t bytes, void *buffer);
+FROND_EXTERN PetscErrorCode SphRestoreState(Sph sph, size_t bytes, const void *buffer);
 
 /* Sums over fluid markers: mass (kg), linear momentum (kg m/s), kinetic energy (J), max speed (m/s), max |rho/rho0-1|. */
 typedef struct {

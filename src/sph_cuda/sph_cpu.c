@@ -1,8 +1,7 @@
 /*
-  sph_cpu.c - the CPU backend: when to rebuild the search structure, the sweeps of one right-hand side, the RK2 stages.
+  sph_cpu.c - the CPU backend: when to rebuild the search structure, the sweeps of one right-hand side, the stages of a step.
 
-  Time integration: explicit midpoint (the paper's second-order Runge-Kutta). Positions and densities move with the XSPH
-  velocity, Eq. 10, velocities with Eq. 5.
+  Positions and densities move with the XSPH velocity, Eq. 10, velocities with Eq. 5; the time integrators are in sphstep.h.
 */
 #include "sph_cpu.h"
 #include <math.h>
@@ -15,12 +14,17 @@ typedef double sphreal;
 
 static PetscErrorCode SetUp_CPU(Sph sph)
 {
+  const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
   SphCpu *cpu;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&cpu));
   cpu->skin = SPH_SKIN;
   cpu->threads = omp_get_max_threads();
+  cpu->stride = (sph->n + 31) / 16 * 16;
+  cpu->nq = SPH_NQ_BASE + (SphTwoVelocities(&sph->par) ? 3 : 0) + (sph->par.diffusion != SPH_DIFFUSION_NONE);
+  PetscCall(PetscMalloc((size_t)cpu->stride * (size_t)cpu->nq * real, &cpu->q)); /* also the workspace of the sort */
+  PetscCall(PetscCalloc1(PetscMax(1, sph->ngroups), &cpu->gmoved));
   sph->data = cpu;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -31,7 +35,7 @@ static PetscErrorCode Destroy_CPU(Sph sph)
 
   PetscFunctionBegin;
   if (!cpu) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < 3; k++) PetscCall(PetscFree(cpu->xref[k]));
+  PetscCall(PetscFree(cpu->gmoved));
   PetscCall(PetscFree(cpu->cellstart));
   PetscCall(PetscFree(cpu->q));
   PetscCall(PetscFree(cpu->lists));
@@ -39,21 +43,12 @@ static PetscErrorCode Destroy_CPU(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest squared displacement since the last build, m^2; HUGE when there is none. Non-finite positions count as far. */
-static double MaxMove2(Sph sph, const SphCpu *cpu)
+/* Bound on the displacement of any marker since the last build, m; HUGE when there is none. Non-finite positions count as far. */
+static double MaxMoved(Sph sph, const SphCpu *cpu)
 {
-  double m = 0.0;
+  double m = cpu->moved;
   if (!cpu->built) return HUGE_VAL;
-#pragma omp parallel for schedule(static) reduction(max : m)
-  for (PetscInt i = 0; i < sph->n; i++) {
-    double r2 = 0.0;
-    for (int k = 0; k < sph->par.dim; k++) {
-      double d = sph->st.x[k][i] - cpu->xref[k][i];
-      if (cpu->grid.periodic[k]) d -= cpu->grid.length[k] * rint(d / cpu->grid.length[k]);
-      r2 += d * d;
-    }
-    if (sph->group[i] != -2 && !(r2 <= m)) m = isnan(r2) ? HUGE_VAL : r2;
-  }
+  for (PetscInt g = 0; g < sph->ngroups; g++) m = PetscMax(m, cpu->gmoved[g]);
   return m;
 }
 
@@ -70,7 +65,8 @@ static void TakeOutLeft(Sph sph)
       if (p->periodic[k]) continue;
       if (sph->st.x[k][i] < p->lo[k] - margin || sph->st.x[k][i] > p->hi[k] + margin) {
         sph->group[i] = -2;
-        for (int d = 0; d < 3; d++) sph->st.v[d][i] = sph->rate.a[d][i] = sph->rate.dv[d][i] = 0.0;
+        for (int d = 0; d < 3; d++)
+          sph->st.v[d][i] = sph->rate.a[d][i] = sph->rate.dv[d][i] = 0.0; /* dv may be the shared zeros */
         sph->rate.ds[i] = 0.0;
         left++;
         break;
@@ -80,14 +76,15 @@ static void TakeOutLeft(Sph sph)
   sph->left += left;
 }
 
-/* Room for the prepared quantities and for each thread's list. */
-static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
+/* Room for each thread's list. */
+static PetscErrorCode SizeLists(Sph sph, SphCpu *cpu)
 {
   const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
   const PetscInt ncell = (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2];
   PetscInt most = 0;
 
   PetscFunctionBegin;
+#pragma omp parallel for schedule(static) reduction(max : most)
   for (PetscInt c = 0; c < ncell; c++) most = PetscMax(most, cpu->cellstart[2 * c + 2] - cpu->cellstart[2 * c]);
   most = (most * (sph->par.dim == 3 ? 27 : 9) + 47) / 16 * 16;
   if (most > cpu->listcap) {
@@ -96,12 +93,8 @@ static PetscErrorCode SizeBuffers(Sph sph, SphCpu *cpu)
     PetscCall(PetscFree(cpu->lists));
     PetscCall(PetscMalloc(cpu->listbytes * (size_t)cpu->threads + 64, &cpu->lists));
   }
-  if (!cpu->q) {
-    cpu->stride = (sph->n + 31) / 16 * 16;
-    cpu->nq = SPH_NQ_BASE + (SphCpuTwoVelocities(&sph->par) ? 3 : 0) + (sph->par.diffusion != SPH_DIFFUSION_NONE);
-    PetscCall(PetscMalloc((size_t)cpu->stride * (size_t)cpu->nq * real, &cpu->q));
-    for (int k = 0; k < 3; k++) PetscCall(PetscCalloc1(sph->n, &cpu->xref[k]));
-  }
+  sph->backendbytes = (PetscReal)((size_t)cpu->stride * (size_t)cpu->nq * real + cpu->listbytes * (size_t)cpu->threads +
+                                  (size_t)cpu->cellcap * sizeof(int));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,13 +104,14 @@ static PetscErrorCode Build_CPU(Sph sph)
   const double allowed = 0.5 * cpu->skin * 2.0 * sph->par.h * 0.5; /* half: the other half is for the motion within the step */
 
   PetscFunctionBegin;
-  if (MaxMove2(sph, cpu) <= allowed * allowed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (MaxMoved(sph, cpu) <= allowed) PetscFunctionReturn(PETSC_SUCCESS);
   if (cpu->built) PetscCall(SphCheckFinite(sph));
   TakeOutLeft(sph);
   PetscCall(SphGridSetUp(sph, cpu->skin, &cpu->grid));
-  PetscCall(SphSortMarkers(sph, &cpu->grid, &cpu->cellstart, &cpu->cellcap));
-  PetscCall(SizeBuffers(sph, cpu));
-  for (int k = 0; k < 3; k++) PetscCall(PetscArraycpy(cpu->xref[k], sph->st.x[k], sph->n));
+  PetscCall(SphSortMarkers(sph, &cpu->grid, &cpu->cellstart, &cpu->cellcap, cpu->q));
+  PetscCall(SizeLists(sph, cpu));
+  cpu->moved = 0.0;
+  PetscCall(PetscArrayzero(cpu->gmoved, PetscMax(1, sph->ngroups)));
   if (!cpu->built) PetscCall(SphCheckOverlap(sph, &cpu->grid, cpu->cellstart));
   cpu->built = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,7 +138,7 @@ static PetscErrorCode Rates_CPU(Sph sph)
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Aux, 0, 0, 0, 0));
   Prepare(sph, 0);
-  if (SphCpuTwoVelocities(&sph->par)) {
+  if (SphTwoVelocities(&sph->par)) {
     Sweep(sph, SPH_SWEEP_AUX);
     Prepare(sph, 1);
   }
@@ -159,20 +153,25 @@ static PetscErrorCode Rates_CPU(Sph sph)
 
 typedef enum { STAGE_HALF, STAGE_RK2, STAGE_SYMPLECTIC, STAGE_VERLET } Stage;
 
-/* One stage of sphstep.h for every marker; boundaries keep their motion, and their density unless it is evolved. */
-SPH_INLINE void MoveStage(Sph sph, const Stage stage, double dt)
+/*
+  One stage of sphstep.h for every marker; boundaries keep their motion, and their density unless it is evolved. Returns the
+  largest squared displacement of a fluid marker over the step, m^2.
+*/
+SPH_INLINE double MoveStage(Sph sph, const Stage stage, double dt)
 {
   const SphParams *p = &sph->par;
   const int evolve = p->wall == SPH_WALL_BCE;
-#pragma omp parallel for schedule(static)
+  double far2 = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : far2)
   for (PetscInt i = 0; i < sph->n; i++) {
     const int fluid = sph->group[i] == -1;
+    double r2 = 0.0;
     SphStepMarker m;
     if (!fluid && !(evolve && sph->group[i] >= 0)) continue;
     for (int k = 0; k < 3; k++) {
       m.x[k] = sph->st.x[k][i];
       m.v[k] = sph->st.v[k][i];
-      m.xn[k] = sph->stn.x[k][i];
+      m.xn[k] = stage == STAGE_VERLET ? m.x[k] : sph->stn.x[k][i];
       m.vn[k] = sph->stn.v[k][i];
       m.acc[k] = k < p->dim ? sph->rate.a[k][i] + p->f[k] : 0.0;
       m.dv[k] = sph->rate.dv[k][i];
@@ -189,14 +188,17 @@ SPH_INLINE void MoveStage(Sph sph, const Stage stage, double dt)
     else
       sph_step_full_verlet(&m, fluid, dt, sph->verletspan);
     sph->st.s[i] = m.s;
-    sph->stn.s[i] = m.sn;
+    if (stage == STAGE_HALF || stage == STAGE_VERLET) sph->stn.s[i] = m.sn;
     for (int k = 0; k < 3 && fluid; k++) {
       sph->st.x[k][i] = m.x[k];
       sph->st.v[k][i] = m.v[k];
-      sph->stn.x[k][i] = m.xn[k];
-      sph->stn.v[k][i] = m.vn[k];
+      if (stage == STAGE_HALF) sph->stn.x[k][i] = m.xn[k];
+      if (stage == STAGE_HALF || stage == STAGE_VERLET) sph->stn.v[k][i] = m.vn[k];
+      r2 += (m.x[k] - m.xn[k]) * (m.x[k] - m.xn[k]);
     }
+    if (fluid && !(r2 <= far2)) far2 = isnan(r2) ? HUGE_VAL : r2;
   }
+  return far2;
 }
 
 static PetscErrorCode HalfStep_CPU(Sph sph, PetscReal dt)
@@ -232,18 +234,26 @@ static PetscErrorCode Reinit_CPU(Sph sph)
 static PetscErrorCode Motion_CPU(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
   const PetscInt first = sph->groupstart[group], last = sph->groupstart[group + 1];
+  SphCpu *cpu = (SphCpu *)sph->data;
+  double far2 = 0.0;
 
   PetscFunctionBegin;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) reduction(max : far2)
   for (PetscInt id = first; id < last; id++) {
     const int i = sph->slot[id];
     const PetscInt o = 3 * (id - first);
+    double r2 = 0.0;
     for (int k = 0; k < sph->par.dim; k++) {
+      double d = x[o + k] - sph->st.x[k][i];
+      if (cpu->grid.periodic[k]) d -= cpu->grid.length[k] * rint(d / cpu->grid.length[k]);
+      r2 += d * d;
       sph->st.x[k][i] = x[o + k];
       sph->st.v[k][i] = v[o + k];
-      sph->ab[k][i] = a ? a[o + k] : 0.0;
+      if (sph->ab[k] != sph->zero) sph->ab[k][i] = a ? a[o + k] : 0.0;
     }
+    if (!(r2 <= far2)) far2 = isnan(r2) ? HUGE_VAL : r2;
   }
+  cpu->gmoved[group] += sqrt(far2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -293,5 +303,27 @@ static PetscErrorCode Push_CPU(Sph sph)
   return PETSC_SUCCESS;
 }
 
+/* Grid, cell ranges, and how far markers have moved since these were made. */
+static PetscErrorCode State_CPU(Sph sph, SphBuffer *b)
+{
+  SphCpu *cpu = (SphCpu *)sph->data;
+  PetscInt nstart = cpu->built ? 2 * (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2] + 2 : 0;
+
+  PetscFunctionBegin;
+  PetscCall(SphBufferMove(b, &cpu->built, sizeof(cpu->built)));
+  PetscCall(SphBufferMove(b, &cpu->grid, sizeof(cpu->grid)));
+  PetscCall(SphBufferMove(b, &nstart, sizeof(nstart)));
+  if (b->way == SPH_BUFFER_LOAD && nstart > cpu->cellcap) {
+    cpu->cellcap = nstart;
+    PetscCall(PetscFree(cpu->cellstart));
+    PetscCall(PetscMalloc1(nstart, &cpu->cellstart));
+  }
+  PetscCall(SphBufferMove(b, cpu->cellstart, (size_t)nstart * sizeof(int)));
+  PetscCall(SphBufferMove(b, &cpu->moved, sizeof(cpu->moved)));
+  PetscCall(SphBufferMove(b, cpu->gmoved, (size_t)sph->ngroups * sizeof(double)));
+  if (b->way == SPH_BUFFER_LOAD && nstart) PetscCall(SizeLists(sph, cpu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 const SphOps SphOps_CPU = {SetUp_CPU, Build_CPU,  Rates_CPU, HalfStep_CPU, FullStep_CPU, Reinit_CPU, Motion_CPU,
-                           Force_CPU, Limits_CPU, Pull_CPU,  Push_CPU,     Destroy_CPU,  NULL};
+                           Force_CPU, Limits_CPU, Pull_CPU,  Push_CPU,     Destroy_CPU,  NULL,       State_CPU};

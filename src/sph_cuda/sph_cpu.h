@@ -26,7 +26,8 @@ typedef struct {
   SphGrid grid;
   int *cellstart; /* 2 ncell + 2 offsets: fluid and boundary markers of each cell */
   PetscInt cellcap;
-  double *xref[3];  /* positions at the last build, m */
+  double moved;     /* bound on the displacement of any fluid marker since the last build, m */
+  double *gmoved;   /* the same for each boundary group */
   double skin;      /* relative enlargement of the cells */
   PetscInt listcap; /* most neighbours that a group can have */
   PetscInt threads;
@@ -44,12 +45,6 @@ typedef enum {
   SPH_SWEEP_SHIFT, /* adds the shifting velocity to that of Eq. 11 */
   SPH_SWEEP_SUM    /* Eq. 9 and its normalisation */
 } SphSweep;
-
-/* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
-static inline int SphCpuTwoVelocities(const SphParams *p)
-{
-  return p->zeta > 0.0 || p->wall == SPH_WALL_ADAMI;
-}
 
 /* Fill the prepared quantities from the state; after an auxiliary sweep only what that changed. */
 extern void SphCpuPrepare_single(Sph sph, int afteraux);

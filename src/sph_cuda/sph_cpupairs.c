@@ -45,7 +45,7 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
 {
   const SphGrid *g = &cpu->grid;
   const SphParams *par = &sph->par;
-  const int uv = SphCpuTwoVelocities(par);
+  const int uv = SphTwoVelocities(par);
 
   for (int k = 0; k < 3; k++) {
     const double *restrict x = sph->st.x[k], *restrict v = sph->st.v[k], *restrict dv = sph->rate.dv[k];
@@ -65,7 +65,6 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
   if (afteraux && !boundary) return;
   for (int i = i0; i < i1; i++) {
     const double s = sph->st.s[i], rho = par->rho0 * (1.0 + s), p = sph_eos(s, par->B, par->gamma) + par->pb;
-    q[SPH_Q_M][i] = (sphreal)sph->m[i];
     q[SPH_Q_S][i] = (sphreal)s;
     q[SPH_Q_VOL][i] = (sphreal)(sph->m[i] / rho);
     q[SPH_Q_P][i] = (sphreal)(p / (rho * rho));
@@ -102,8 +101,7 @@ SPH_INLINE void Rates(const int kernel, const int visc, const int uv, const int 
   sphreal *const *l_q = l->q;
   const sphreal *restrict X = l_q[0], *restrict Y = l_q[1], *restrict Z = l_q[2], *restrict VX = l_q[SPH_Q_V],
                           *restrict VY = l_q[SPH_Q_V + 1], *restrict VZ = l_q[SPH_Q_V + 2];
-  const sphreal *restrict M = l_q[SPH_Q_M], *restrict S = l_q[SPH_Q_S], *restrict VOL = l_q[SPH_Q_VOL],
-                          *restrict P = l_q[SPH_Q_P];
+  const sphreal *restrict S = l_q[SPH_Q_S], *restrict VOL = l_q[SPH_Q_VOL], *restrict P = l_q[SPH_Q_P];
   const sphreal *restrict UX = l_q[SPH_Q_U], *restrict UY = l_q[SPH_Q_U + 1], *restrict UZ = l_q[SPH_Q_U + 2],
                           *restrict D = l_q[SPH_Q_DIF(uv)];
   const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
@@ -116,20 +114,20 @@ SPH_INLINE void Rates(const int kernel, const int visc, const int uv, const int 
     const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j];
     const sphreal r2 = dx * dx + dy * dy + dz * dz;
     const sphreal F = c.fnorm * sph_f(kernel, SPH_SQRT(r2) * c.hinv);
-    const sphreal ex = vx - VX[j], ey = vy - VY[j], ez = vz - VZ[j], rhoj = c.rho0 + c.rho0 * S[j];
+    const sphreal ex = vx - VX[j], ey = vy - VY[j], ez = vz - VZ[j], rhoj = c.rho0 + c.rho0 * S[j], mj = VOL[j] * rhoj;
     const sphreal evx = ex * dx + ey * dy + ez * dz;
     const sphreal eux = uv ? (ux - UX[j]) * dx + (uy - UY[j]) * dy + (uz - UZ[j]) * dz : evx;
-    const sphreal fp = sph_pressure(M[j], Pi, P[j], F);
+    const sphreal fp = sph_pressure(mj, Pi, P[j], F);
     ds += sph_continuity(VOL[j], eux, F);
     if (diff) dd += sph_diffusion(&c, D[j], si, S[j], c.g[0] * dx + c.g[1] * dy + c.g[2] * dz, F);
     if (visc == SPH_VISCOSITY_ARTIFICIAL) {
-      const sphreal f = fp + sph_viscosity_artificial(&c, M[j], rho, rhoj, evx, r2, F);
+      const sphreal f = fp + sph_viscosity_artificial(&c, mj, rho, rhoj, evx, r2, F);
       ax += f * dx;
       ay += f * dy;
       az += f * dz;
     } else {
-      const sphreal fv = visc == SPH_VISCOSITY_MORRIS ? sph_viscosity_morris(&c, M[j], rho, rhoj, r2, F)
-                                                      : sph_viscosity(&c, M[j], rho, rhoj, r2, F);
+      const sphreal fv =
+          visc == SPH_VISCOSITY_MORRIS ? sph_viscosity_morris(&c, mj, rho, rhoj, r2, F) : sph_viscosity(&c, mj, rho, rhoj, r2, F);
       ax += fp * dx + fv * ex;
       ay += fp * dy + fv * ey;
       az += fp * dz + fv * ez;
@@ -148,16 +146,15 @@ SPH_INLINE void AuxFluid(const int kernel, const Sweep *w, const List *l, int i)
   const SphPairConst c = w->c;
   const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VX = l->q[SPH_Q_V],
                           *restrict VY = l->q[SPH_Q_V + 1], *restrict VZ = l->q[SPH_Q_V + 2];
-  const sphreal *restrict M = l->q[SPH_Q_M], *restrict S = l->q[SPH_Q_S];
+  const sphreal *restrict S = l->q[SPH_Q_S], *restrict VOL = l->q[SPH_Q_VOL];
   const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
                 vz = w->q[SPH_Q_V + 2][i];
   const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i];
   sphreal sx = 0, sy = 0, sz = 0;
 #pragma omp simd reduction(+ : sx, sy, sz)
   for (int j = 0; j < l->n; j++) {
-    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j];
-    const sphreal f =
-        sph_xsph(M[j], rho, c.rho0 + c.rho0 * S[j], c.wnorm * sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv));
+    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], rhoj = c.rho0 + c.rho0 * S[j];
+    const sphreal f = sph_xsph(VOL[j] * rhoj, rho, rhoj, c.wnorm * sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv));
     sx += f * (VX[j] - vx);
     sy += f * (VY[j] - vy);
     sz += f * (VZ[j] - vz);

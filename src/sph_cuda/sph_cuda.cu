@@ -147,6 +147,7 @@ typedef struct {
 
 static int ListMirrors(Sph sph, const SphCudaArrays *d, Mirror *m)
 {
+  const int old = sph->par.integrator == SPH_INTEGRATOR_VERLET; /* the state before lives from step to step */
   int n = 0;
 #define MIRROR(dev, host)                                                                                                        \
   m[n++] = Mirror                                                                                                                \
@@ -159,9 +160,11 @@ static int ListMirrors(Sph sph, const SphCudaArrays *d, Mirror *m)
     MIRROR(d->rate.a[k], sph->rate.a[k]);
     MIRROR(d->rate.dv[k], sph->rate.dv[k]);
     MIRROR(d->ab[k], sph->ab[k]);
+    if (old) MIRROR(d->stn.v[k], sph->stn.v[k]);
   }
   MIRROR(d->st.s, sph->st.s);
   MIRROR(d->rate.ds, sph->rate.ds);
+  if (old) MIRROR(d->stn.s, sph->stn.s);
   MIRROR(d->m, sph->m);
   MIRROR(d->wallratio, sph->wallratio);
   MIRROR(d->group, sph->group);
@@ -258,6 +261,15 @@ PetscErrorCode SphCudaFlushMotion(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Are the n values of x (zeros when NULL) those in h? */
+static PetscBool Same(const double *h, const PetscReal *x, PetscInt n)
+{
+  for (PetscInt i = 0; i < n; i++)
+    if (h[i] != (x ? x[i] : 0.0)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Markers that stay as they are, walls above all, are not sent again. */
 static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
@@ -265,6 +277,7 @@ static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, c
   double *hx = cuda->hmotion + 3 * b0, *hv = hx + 3 * cuda->nb, *ha = hv + 3 * cuda->nb;
 
   PetscFunctionBegin;
+  if (Same(hx, x, 3 * (b1 - b0)) && Same(hv, v, 3 * (b1 - b0)) && Same(ha, a, 3 * (b1 - b0))) PetscFunctionReturn(PETSC_SUCCESS);
   if (cuda->uploading) { /* the copy engine may still be reading hmotion */
     SphCallCUDA(cudaEventSynchronize(cuda->uploaded));
     cuda->uploading = PETSC_FALSE;
@@ -275,7 +288,6 @@ static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, c
     PetscCall(PetscArraycpy(ha, a, 3 * (b1 - b0)));
   else
     PetscCall(PetscArrayzero(ha, 3 * (b1 - b0)));
-  if (b0 == b1) PetscFunctionReturn(PETSC_SUCCESS);
   if (cuda->dirty0 == cuda->dirty1) {
     cuda->dirty0 = b0;
     cuda->dirty1 = b1;
@@ -320,6 +332,41 @@ static PetscErrorCode Rates_CUDA(Sph sph)
   PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
   cuda->hostcurrent = cuda->forcecurrent = PETSC_FALSE;
   sph->evaluations += (PetscReal)(sph->n - sph->left);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The search structure of sphstate.c: grid, keys and the positions they were made at. After a load the device has all of the
+ * state. */
+static PetscErrorCode State_CUDA(Sph sph, SphBuffer *b)
+{
+  SphCuda *cuda = (SphCuda *)sph->data;
+  const size_t n = (size_t)sph->n, nd = n * sizeof(double), nk = n * sizeof(unsigned);
+  const int load = b->way == SPH_BUFFER_LOAD;
+  PetscBool built = cuda->built;
+  double *x[3];
+  unsigned *key;
+
+  PetscFunctionBegin;
+  PetscCall(SphBufferMove(b, &built, sizeof(built)));
+  PetscCall(SphBufferMove(b, &cuda->grid, sizeof(cuda->grid)));
+  PetscCall(PetscMalloc4(n, &x[0], n, &x[1], n, &x[2], n, &key));
+  if (!load) {
+    for (int k = 0; k < 3; k++) SphCallCUDA(cudaMemcpyAsync(x[k], cuda->d.xref[k], nd, cudaMemcpyDeviceToHost, cuda->stream));
+    SphCallCUDA(cudaMemcpyAsync(key, cuda->d.key, nk, cudaMemcpyDeviceToHost, cuda->stream));
+    SphCallCUDA(cudaStreamSynchronize(cuda->stream));
+  }
+  for (int k = 0; k < 3; k++) PetscCall(SphBufferMove(b, x[k], nd));
+  PetscCall(SphBufferMove(b, key, nk));
+  if (load) {
+    PetscCall(Push_CUDA(sph));
+    for (int k = 0; k < 3; k++) SphCallCUDA(cudaMemcpyAsync(cuda->d.xref[k], x[k], nd, cudaMemcpyHostToDevice, cuda->stream));
+    SphCallCUDA(cudaMemcpyAsync(cuda->d.key, key, nk, cudaMemcpyHostToDevice, cuda->stream));
+    if (built) PetscCall(SphCudaRanges(cuda));
+    SphCallCUDA(cudaStreamSynchronize(cuda->stream));
+    cuda->built = built;
+    cuda->forcecurrent = PETSC_FALSE;
+  }
+  PetscCall(PetscFree4(x[0], x[1], x[2], key));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -373,6 +420,6 @@ static PetscErrorCode Destroy_CUDA(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,    SphCudaBuild, Rates_CUDA,  SphCudaHalfStep, SphCudaFullStep,
-                                       SphCudaReinit, Motion_CUDA,  Force_CUDA,  SphCudaLimits,   Pull_CUDA,
-                                       Push_CUDA,     Destroy_CUDA, SphCudaCheck};
+extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,    SphCudaBuild, Rates_CUDA,   SphCudaHalfStep, SphCudaFullStep,
+                                       SphCudaReinit, Motion_CUDA,  Force_CUDA,   SphCudaLimits,   Pull_CUDA,
+                                       Push_CUDA,     Destroy_CUDA, SphCudaCheck, State_CUDA};

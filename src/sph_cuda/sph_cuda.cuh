@@ -66,6 +66,7 @@ extern PetscErrorCode SphCudaReserve(SphCuda *cuda, void **p, size_t bytes);
 
 /* sph_cudabuild.cu */
 extern PetscErrorCode SphCudaBuild(Sph sph);
+extern PetscErrorCode SphCudaRanges(SphCuda *cuda);
 extern PetscErrorCode SphCudaSortBytes(PetscInt n, size_t *bytes);
 
 /* sph_cudastep.cu */

@@ -226,6 +226,21 @@ static PetscErrorCode CheckOverlap(Sph sph, SphCuda *cuda)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Cell ranges from the sorted keys. */
+PetscErrorCode SphCudaRanges(SphCuda *cuda)
+{
+  SphCudaArrays *d = &cuda->d;
+  const PetscInt nstart = 2 * (PetscInt)cuda->grid.n[0] * cuda->grid.n[1] * cuda->grid.n[2] + 2;
+
+  PetscFunctionBegin;
+  if (nstart > cuda->keycap) {
+    cuda->keycap = nstart + nstart / 8;
+    PetscCall(SphCudaReserve(cuda, (void **)&d->cellstart, (size_t)cuda->keycap * sizeof(int)));
+  }
+  SphCallCUDA(SphLaunch(cuda->stream, nstart, RangeKernel, d->key, d->n, d->cellstart, (int)nstart));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphCudaBuild(Sph sph)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
@@ -243,14 +258,9 @@ PetscErrorCode SphCudaBuild(Sph sph)
   SphCallCUDA(SphLaunch(cuda->stream, d->n, LeftKernel, *d, sph->par));
   PetscCall(SphCudaCountLeft(sph, &sph->left));
   PetscCall(GridSetUp(sph, cuda));
-  const PetscInt nstart = 2 * (PetscInt)cuda->grid.n[0] * cuda->grid.n[1] * cuda->grid.n[2] + 2;
-  if (nstart > cuda->keycap) {
-    cuda->keycap = nstart + nstart / 8;
-    PetscCall(SphCudaReserve(cuda, (void **)&d->cellstart, (size_t)cuda->keycap * sizeof(int)));
-  }
-  PetscCall(Sort(sph, cuda, (unsigned)nstart - 1));
+  PetscCall(Sort(sph, cuda, (unsigned)(2 * cuda->grid.n[0] * cuda->grid.n[1] * cuda->grid.n[2] + 1)));
   PetscCall(PermuteAll(cuda, sph->par.integrator == SPH_INTEGRATOR_VERLET ? PETSC_TRUE : PETSC_FALSE));
-  SphCallCUDA(SphLaunch(cuda->stream, nstart, RangeKernel, d->key, d->n, d->cellstart, (int)nstart));
+  PetscCall(SphCudaRanges(cuda));
   cuda->hostcurrent = PETSC_FALSE;
   if (!cuda->built) PetscCall(CheckOverlap(sph, cuda));
   cuda->built = PETSC_TRUE;

@@ -11,6 +11,7 @@
 static void OpenExtent(Sph sph, int k, double *lo, double *hi)
 {
   double a = PETSC_MAX_REAL, b = PETSC_MIN_REAL;
+#pragma omp parallel for schedule(static) reduction(min : a) reduction(max : b)
   for (PetscInt i = 0; i < sph->n; i++) {
     if (sph->group[i] == -2) continue;
     a = PetscMin(a, sph->st.x[k][i]);
@@ -64,13 +65,12 @@ static inline int SortKey(Sph sph, const SphGrid *g, PetscInt i)
   return 2 * sph_cell_index(g, cx, cy, cz) + (sph->group[i] >= 0 ? 1 : 0);
 }
 
-static void PermuteDouble(double **array, double **spare, const int *from, PetscInt n)
+static void PermuteDouble(double *array, double *work, const int *from, PetscInt n)
 {
-  double *restrict src = *array, *restrict dst = *spare;
 #pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < n; i++) dst[i] = src[from[i]];
-  *array = dst;
-  *spare = src;
+  for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];
+#pragma omp parallel for schedule(static)
+  for (PetscInt i = 0; i < n; i++) array[i] = work[i];
 }
 
 static void PermuteInt(int *array, int *work, const int *from, PetscInt n)
@@ -184,33 +184,29 @@ static PetscErrorCode OrderWithinCells(Sph sph, const SphGrid *g, const int *sta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All arrays that live in sorted order; the saved state only where it must survive from step to step. */
-static PetscErrorCode PermuteAll(Sph sph, const int *from, int *work)
+/* All arrays that live in sorted order; the saved state only where it must survive from step to step. work: n doubles. */
+static void PermuteAll(Sph sph, const int *from, double *work)
 {
   const PetscInt n = sph->n;
   const int saved = sph->par.integrator == SPH_INTEGRATOR_VERLET;
-  double *spare;
-  double **const arrays[] = {&sph->st.x[0],   &sph->st.x[1],   &sph->st.x[2],    &sph->st.v[0],    &sph->st.v[1],
-                             &sph->st.v[2],   &sph->st.s,      &sph->m,          &sph->wallratio,  &sph->rate.a[0],
-                             &sph->rate.a[1], &sph->rate.a[2], &sph->rate.dv[0], &sph->rate.dv[1], &sph->rate.dv[2],
-                             &sph->rate.ds,   &sph->ab[0],     &sph->ab[1],      &sph->ab[2],      &sph->stn.v[0],
-                             &sph->stn.v[1],  &sph->stn.v[2],  &sph->stn.s};
+  double *const arrays[] = {sph->st.x[0],   sph->st.x[1],    sph->st.x[2],    sph->st.v[0],    sph->st.v[1],   sph->st.v[2],
+                            sph->st.s,      sph->m,          sph->wallratio,  sph->rate.ds,    sph->rate.a[0], sph->rate.a[1],
+                            sph->rate.a[2], sph->rate.dv[0], sph->rate.dv[1], sph->rate.dv[2], sph->ab[0],     sph->ab[1],
+                            sph->ab[2],     sph->stn.v[0],   sph->stn.v[1],   sph->stn.v[2],   sph->stn.s};
 
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(sph->cap, &spare)); /* it changes places with the arrays: as long as they are */
-  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]) - (saved ? 0 : 4); k++) PermuteDouble(arrays[k], &spare, from, n);
-  PetscCall(PetscFree(spare));
-  PermuteInt(sph->group, work, from, n);
-  PermuteInt(sph->id, work, from, n);
+  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]) - (saved ? 0 : 4); k++)
+    if (arrays[k] != sph->zero) PermuteDouble(arrays[k], work, from, n);
+  PermuteInt(sph->group, (int *)work, from, n);
+  PermuteInt(sph->id, (int *)work, from, n);
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < n; i++) sph->slot[sph->id[i]] = (int)i;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscInt *cellcap)
+PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscInt *cellcap, void *scratch)
 {
   const PetscInt n = sph->n, nkeys = 2 * (PetscInt)g->n[0] * g->n[1] * g->n[2] + 1;
-  int *key, *from;
+  double *work = (double *)scratch;
+  int *key = (int *)work, *from = (int *)(work + n);
 
   PetscFunctionBegin;
   if (nkeys + 1 > *cellcap) {
@@ -218,7 +214,6 @@ PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscI
     *cellcap = nkeys + 1 + nkeys / 8;
     PetscCall(PetscMalloc1(*cellcap, cellstart));
   }
-  PetscCall(PetscMalloc2(n, &key, n, &from));
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < n; i++) {
     for (int k = 0; k < sph->par.dim; k++) { /* wrap fluid and boundary markers into the period */
@@ -228,8 +223,7 @@ PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscI
   }
   PetscCall(CountingSort(n, key, nkeys, *cellstart, from));
   PetscCall(OrderWithinCells(sph, g, *cellstart, nkeys - 1, from));
-  PetscCall(PermuteAll(sph, from, key));
-  PetscCall(PetscFree2(key, from));
+  PermuteAll(sph, from, work);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

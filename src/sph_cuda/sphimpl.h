@@ -9,6 +9,7 @@
 
 #include "sph.h"
 #include "sphcell.h"
+#include <string.h>
 
 /* Steps between the Euler steps of the Verlet integrator, sphstep.h. */
 #define SPH_VERLET_EVERY 40
@@ -59,6 +60,28 @@ typedef struct {
   double *ds;    /* d(rho/rho0)/dt, 1/s */
 } SphRates;
 
+/* A state on its way into a buffer or out of it; counting only when there is none (sphstate.c). */
+typedef enum { SPH_BUFFER_COUNT, SPH_BUFFER_SAVE, SPH_BUFFER_LOAD } SphBufferWay;
+typedef struct {
+  char *p;
+  size_t size, at; /* bytes */
+  SphBufferWay way;
+} SphBuffer;
+static inline PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t bytes)
+{
+  PetscFunctionBegin;
+  if (b->way != SPH_BUFFER_COUNT) {
+    PetscCheck(b->at + bytes <= b->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "the buffer of a fluid state has %zu bytes; it needs more",
+               b->size);
+    if (b->way == SPH_BUFFER_SAVE)
+      memcpy(b->p + b->at, data, bytes);
+    else
+      memcpy(data, b->p + b->at, bytes);
+  }
+  b->at += bytes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 typedef struct _SphOps {
   PetscErrorCode (*setup)(Sph);
   PetscErrorCode (*build)(Sph);                    /* sort markers and find cell ranges when needed */
@@ -73,6 +96,7 @@ typedef struct _SphOps {
   PetscErrorCode (*push)(Sph);                     /* host arrays changed */
   PetscErrorCode (*destroy)(Sph);
   PetscErrorCode (*check)(Sph);                    /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
+  PetscErrorCode (*state)(Sph, SphBuffer *);       /* move the search structure; NULL: it is built anew when a state is saved or restored */
 } SphOps;
 
 struct _p_Sph {
@@ -96,10 +120,12 @@ struct _p_Sph {
   double   *ab[3];              /* boundary acceleration, m/s^2 */
   int      *group;              /* -1 fluid, -2 left, else group */
   int      *id, *slot;
+  double   *zero;               /* array of zeros that stands for those of the above that no term reads, or NULL */
+  PetscReal backendbytes;       /* memory of the backend on the host, bytes */
 
   PetscReal t, dt;              /* time and current step, s */
   PetscInt  step;
-  PetscBool insidestep, fixedwarned;
+  PetscBool insidestep, fixedwarned, evaluated; /* evaluated: second-stage rates are there already */
   PetscInt  verletstep;         /* steps since stn was last invalid: 0 asks for an Euler step */
   PetscReal dtold, verletspan;  /* s; span of the Verlet step in progress, 0 for Euler */
   PetscReal evaluations;        /* marker right-hand sides evaluated */
@@ -118,8 +144,18 @@ extern PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, S
 
 /* sphcell.c: grid for the markers as they are, and a stable sort of all arrays into cell order. */
 extern PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *grid);
-extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap);
+extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap, void *scratch); /* scratch: 12 n bytes, for doubles */
 extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *cellstart);
+
+/* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
+static inline int SphTwoVelocities(const SphParams *p)
+{
+  return p->zeta > 0.0 || p->wall == SPH_WALL_ADAMI;
+}
+
+/* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those that no term reads. */
+extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share);
+extern PetscErrorCode SphFreeArrays(Sph sph);
 
 /* sphwall.c: factor r in v_ext = v_b + r (v_b - <v>) for a marker `depth` below a flat surface. */
 extern PetscReal SphWallRatio(const SphParams *par, PetscReal depth);

@@ -30,29 +30,92 @@ static PetscErrorCode GrowInt(int **a, PetscInt n, PetscInt cap)
 
 static PetscErrorCode Reserve(Sph sph, PetscInt more)
 {
-  const PetscInt cap = sph->n + more;
+  PetscInt cap = sph->n + more;
 
   PetscFunctionBegin;
   PetscCheck(cap < 2000000000, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " markers: must be fewer than 2e9", cap);
   if (cap <= sph->cap) PetscFunctionReturn(PETSC_SUCCESS);
+  if (sph->ngroups >= 8) cap = PetscMax(cap, sph->cap + sph->cap / 16); /* thousands of beams or bodies: not a copy for each */
   for (int k = 0; k < 3; k++) {
     PetscCall(GrowDouble(&sph->st.x[k], sph->n, cap));
     PetscCall(GrowDouble(&sph->st.v[k], sph->n, cap));
-    PetscCall(GrowDouble(&sph->stn.x[k], sph->n, cap));
-    PetscCall(GrowDouble(&sph->stn.v[k], sph->n, cap));
-    PetscCall(GrowDouble(&sph->rate.a[k], sph->n, cap));
-    PetscCall(GrowDouble(&sph->rate.dv[k], sph->n, cap));
-    PetscCall(GrowDouble(&sph->ab[k], sph->n, cap));
   }
   PetscCall(GrowDouble(&sph->st.s, sph->n, cap));
-  PetscCall(GrowDouble(&sph->stn.s, sph->n, cap));
-  PetscCall(GrowDouble(&sph->rate.ds, sph->n, cap));
   PetscCall(GrowDouble(&sph->m, sph->n, cap));
   PetscCall(GrowDouble(&sph->wallratio, sph->n, cap));
   PetscCall(GrowInt(&sph->group, sph->n, cap));
   PetscCall(GrowInt(&sph->id, sph->n, cap));
   PetscCall(GrowInt(&sph->slot, sph->n, cap));
   sph->cap = cap;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A zeroed array, or the one of zeros that all unread arrays share. */
+static PetscErrorCode Allocate(Sph sph, PetscBool shared, double **a)
+{
+  PetscFunctionBegin;
+  if (shared && sph->zero)
+    *a = sph->zero;
+  else
+    PetscCall(PetscCalloc1(sph->cap, a));
+  if (shared) sph->zero = *a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share)
+{
+  const SphParams *p = &sph->par;
+  const PetscBool nodv = share && !SphTwoVelocities(p) ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool noab = share && p->wall != SPH_WALL_ADAMI ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool noxn = share && p->integrator == SPH_INTEGRATOR_VERLET ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCall(Allocate(sph, noxn, &sph->stn.x[k]));
+    PetscCall(Allocate(sph, PETSC_FALSE, &sph->stn.v[k]));
+    PetscCall(Allocate(sph, PETSC_FALSE, &sph->rate.a[k]));
+    PetscCall(Allocate(sph, nodv, &sph->rate.dv[k]));
+    PetscCall(Allocate(sph, noab, &sph->ab[k]));
+  }
+  PetscCall(Allocate(sph, PETSC_FALSE, &sph->stn.s));
+  PetscCall(Allocate(sph, PETSC_FALSE, &sph->rate.ds));
+  if (noab) {
+    PetscCall(PetscFree(sph->wallratio));
+    sph->wallratio = sph->zero;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Free(Sph sph, double **a)
+{
+  PetscFunctionBegin;
+  if (*a != sph->zero) PetscCall(PetscFree(*a));
+  *a = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphFreeArrays(Sph sph)
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCall(Free(sph, &sph->st.x[k]));
+    PetscCall(Free(sph, &sph->st.v[k]));
+    PetscCall(Free(sph, &sph->stn.x[k]));
+    PetscCall(Free(sph, &sph->stn.v[k]));
+    PetscCall(Free(sph, &sph->rate.a[k]));
+    PetscCall(Free(sph, &sph->rate.dv[k]));
+    PetscCall(Free(sph, &sph->ab[k]));
+  }
+  PetscCall(Free(sph, &sph->st.s));
+  PetscCall(Free(sph, &sph->stn.s));
+  PetscCall(Free(sph, &sph->rate.ds));
+  PetscCall(Free(sph, &sph->m));
+  PetscCall(Free(sph, &sph->wallratio));
+  PetscCall(PetscFree(sph->zero));
+  PetscCall(PetscFree(sph->group));
+  PetscCall(PetscFree(sph->id));
+  PetscCall(PetscFree(sph->slot));
+  PetscCall(PetscFree(sph->groupstart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -240,12 +303,16 @@ PetscErrorCode SphSample(Sph sph, PetscInt np, const PetscReal *x, PetscReal *v,
 
 PetscErrorCode SphGetWork(Sph sph, PetscReal *bytes, PetscReal *evaluations)
 {
-  const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
+  double *const arrays[] = {sph->st.x[0],    sph->st.x[1],    sph->st.x[2],   sph->st.v[0],   sph->st.v[1],   sph->st.v[2],
+                            sph->st.s,       sph->stn.x[0],   sph->stn.x[1],  sph->stn.x[2],  sph->stn.v[0],  sph->stn.v[1],
+                            sph->stn.v[2],   sph->stn.s,      sph->rate.a[0], sph->rate.a[1], sph->rate.a[2], sph->rate.dv[0],
+                            sph->rate.dv[1], sph->rate.dv[2], sph->rate.ds,   sph->ab[0],     sph->ab[1],     sph->ab[2],
+                            sph->m,          sph->wallratio};
+  PetscReal doubles = sph->zero ? 1.0 : 0.0;
 
   PetscFunctionBegin;
-  /* state, saved state, rates, boundary acceleration, mass, ratio, search reference, spare: doubles; prepared quantities: 13
-   * reals; 3 ints, sort keys */
-  if (bytes) *bytes = (PetscReal)sph->n * (PetscReal)((7 + 7 + 7 + 3 + 2 + 3 + 1) * sizeof(double) + 13 * real + 5 * sizeof(int));
+  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) doubles += arrays[k] != sph->zero;
+  if (bytes) *bytes = (PetscReal)sph->cap * (doubles * sizeof(double) + 3.0 * sizeof(int)) + sph->backendbytes;
   if (evaluations) *evaluations = sph->evaluations;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

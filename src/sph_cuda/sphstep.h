@@ -5,7 +5,8 @@
   symplectic: midpoint predictor, position Verlet corrector, density corrected by a quotient: Parshikov et al., Int. J. Impact
   Eng. 24 (2000); Dominguez et al., Comput. Part. Mech. 9 (2022), Sect. 2.6. verlet: leapfrog from the state before, one
   evaluation per step, every SPH_VERLET_EVERY steps an explicit Euler step that keeps the two interleaved solutions together:
-  Verlet, Phys. Rev. 159 (1967); Dominguez et al. (2022). With a varying step the span is dt + dt_old.
+  Verlet, Phys. Rev. 159 (1967); Dominguez et al. (2022). With a varying step the span is dt + dt_old. The XSPH velocity enters
+  positions at the beginning of the step, to first order.
 */
 #ifndef SPHSTEP_H
 #define SPHSTEP_H

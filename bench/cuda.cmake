@@ -1,0 +1,15 @@
+# bench_cuda runs on both backends; the ceilings of the device need nvcc.
+add_executable(bench_cuda bench_cuda.c)
+target_link_libraries(bench_cuda PRIVATE frond frond_flags)
+if(FROND_HAVE_CUDA)
+  enable_language(CUDA)
+  target_sources(bench_cuda PRIVATE bench_ceiling.cu)
+  target_compile_definitions(bench_cuda PRIVATE FROND_HAVE_CUDA)
+  set_target_properties(bench_cuda PROPERTIES CUDA_STANDARD 17 LINKER_LANGUAGE C)
+  set_property(TARGET bench_cuda PROPERTY CUDA_ARCHITECTURES ${CMAKE_CUDA_ARCHITECTURES})
+  find_package(CUDAToolkit REQUIRED)
+  target_link_libraries(bench_cuda PRIVATE CUDA::cudart_static stdc++)
+endif()
+
+add_executable(bench_scaling bench_scaling.c)
+target_link_libraries(bench_scaling PRIVATE frond frond_flags)

@@ -1,0 +1,515 @@
+/*
+  couplehost.c - structures given by nodes and shape functions: motion of BCE markers on them, and the transposed transfer of
+  forces.
+
+  A section at r = sum S_j q_j with the tangent t = r_s/|r_s|, r_s = sum S'_j q_j, turns with w = t x r_s'/|r_s|: the turning of
+  the tangent without spin about it, which the nodes have no coordinate for. A marker at offset o moves with r' + w x o. A force F
+  on it does the virtual work F . dr + (o x F) . (t x dr_s)/|r_s|, hence Q_j = S_j F + S'_j ((o x F) x t)/|r_s|. The axial part of
+  o x F does no work on any node; the audit reports it as twist. Beams of ANCF are a case of this (couplebeam.c).
+*/
+#include "couplehost.h"
+#include "coupleimpl.h"
+
+typedef struct {
+  CoupleHostOps ops;
+  void *ctx;
+  PetscInt dim, nnodes, nsections, n;
+  PetscInt *rowstart, *node, *section;
+  PetscBool *direction;
+  PetscReal *shape, *slope; /* slope: NULL without */
+  PetscReal *offset, *x0, *volume, *depth;
+  PetscReal *d1; /* per section with slopes: transported unit normal at the structure's own time, 3 */
+  PetscReal *Q;  /* kept here when the host has no array for it */
+  /* of the last kinematics call */
+  PetscReal *q, *qdot;        /* nodes, nnodes x 3 */
+  PetscReal *r, *t, *len, *o; /* per section: point, tangent (3), |r_s|; per marker: offset (3) */
+} Host;
+
+/* Motion of one section: velocity and acceleration of its point, w and dw/dt. */
+typedef struct {
+  PetscReal v[3], a[3], w[3], alpha[3];
+} SectionMotion;
+
+/* The nodes extrapolated by dt: q, q', and (the host's array) q''. */
+static PetscErrorCode Extrapolate(Host *h, PetscReal dt, const PetscReal **qddot)
+{
+  const PetscReal *q, *v, *a;
+
+  PetscFunctionBegin;
+  PetscCall((*h->ops.getstate)(h->ctx, NULL, &q, &v, &a));
+  for (PetscInt i = 0; i < 3 * h->nnodes; i++) {
+    h->q[i] = q[i] + dt * (v[i] + 0.5 * dt * a[i]);
+    h->qdot[i] = v[i] + dt * a[i];
+  }
+  *qddot = a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* r = sum over the entries of section s of weight times node vector. */
+static void Interpolate(const Host *h, PetscInt s, const PetscReal *weight, const PetscReal *q, PetscReal r[3])
+{
+  r[0] = r[1] = r[2] = 0.0;
+  for (PetscInt e = h->rowstart[s]; e < h->rowstart[s + 1]; e++)
+    for (int k = 0; k < 3; k++) r[k] += weight[e] * q[3 * h->node[e] + k];
+}
+
+/* Transport of the normal d1 to tangent t: remove its component along t. In 2D it is the in-plane normal. */
+static void Transport(const Host *h, const PetscReal t[3], PetscReal d1[3])
+{
+  if (h->dim == 2) {
+    d1[0] = -t[1];
+    d1[1] = t[0];
+    d1[2] = 0.0;
+    return;
+  }
+  const PetscReal c = CoupleDot(d1, t);
+  PetscReal n;
+  for (int k = 0; k < 3; k++) d1[k] -= c * t[k];
+  n = PetscSqrtReal(CoupleDot(d1, d1));
+  for (int k = 0; k < 3; k++) d1[k] /= n;
+}
+
+static void MoveSection(Host *h, PetscInt s, const PetscReal *qddot, SectionMotion *m)
+{
+  PetscReal rs[3], rsd[3], rsdd[3], *t = h->t + 3 * s, td[3], c1[3], c2[3], tr;
+
+  Interpolate(h, s, h->shape, h->q, h->r + 3 * s);
+  Interpolate(h, s, h->shape, h->qdot, m->v);
+  Interpolate(h, s, h->shape, qddot, m->a);
+  if (!h->slope) return;
+  Interpolate(h, s, h->slope, h->q, rs);
+  Interpolate(h, s, h->slope, h->qdot, rsd);
+  Interpolate(h, s, h->slope, qddot, rsdd);
+  h->len[s] = PetscSqrtReal(CoupleDot(rs, rs));
+  for (int k = 0; k < 3; k++) t[k] = rs[k] / h->len[s];
+  CoupleCross(t, rsd, m->w);
+  tr = CoupleDot(t, rsd) / h->len[s];
+  for (int k = 0; k < 3; k++) {
+    m->w[k] /= h->len[s];
+    td[k] = rsd[k] / h->len[s] - t[k] * tr;
+  }
+  CoupleCross(td, rsd, c1);
+  CoupleCross(t, rsdd, c2);
+  for (int k = 0; k < 3; k++) m->alpha[k] = (c1[k] + c2[k]) / h->len[s] - m->w[k] * tr;
+}
+
+/* A marker of section s, at offset o from its point. */
+static void MoveMarker(const Host *h, PetscInt i, const SectionMotion *m, PetscReal x[3], PetscReal v[3], PetscReal a[3])
+{
+  const PetscReal *r = h->r + 3 * h->section[i], *o = h->o + 3 * i;
+  PetscReal wo[3] = {0, 0, 0}, wwo[3] = {0, 0, 0}, ao[3] = {0, 0, 0};
+
+  if (h->slope) {
+    CoupleCross(m->w, o, wo);
+    CoupleCross(m->w, wo, wwo);
+    CoupleCross(m->alpha, o, ao);
+  }
+  for (int k = 0; k < 3; k++) {
+    x[k] = r[k] + o[k];
+    v[k] = m->v[k] + wo[k];
+    a[k] = m->a[k] + ao[k] + wwo[k];
+  }
+}
+
+static PetscErrorCode Kinematics_Host(CoupleSurface surface, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
+{
+  Host *h = (Host *)surface->ctx;
+  const PetscReal *qddot;
+  PetscInt i = 0;
+
+  PetscFunctionBegin;
+  PetscCall(Extrapolate(h, dt, &qddot));
+  for (PetscInt s = 0; s < h->nsections; s++) {
+    SectionMotion m;
+    PetscReal d1[3] = {0, 0, 0}, d2[3] = {0, 0, 0};
+    MoveSection(h, s, qddot, &m);
+    if (h->slope) {
+      for (int k = 0; k < 3; k++) d1[k] = h->d1[3 * s + k];
+      Transport(h, h->t + 3 * s, d1);
+      CoupleCross(h->t + 3 * s, d1, d2);
+    }
+    for (; i < h->n && h->section[i] == s; i++) {
+      for (int k = 0; k < 3; k++) h->o[3 * i + k] = h->offset[2 * i] * d1[k] + h->offset[2 * i + 1] * d2[k];
+      MoveMarker(h, i, &m, x + 3 * i, v + 3 * i, a + 3 * i);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetMarkers_Host(CoupleSurface surface, PetscInt *n, const PetscReal **x, const PetscReal **volume,
+                                      const PetscReal **depth)
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  *n = h->n;
+  *x = h->x0;
+  *volume = h->volume;
+  *depth = h->depth;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetLoads(Host *h, PetscReal **Q)
+{
+  PetscFunctionBegin;
+  *Q = h->Q;
+  if (h->ops.getloads) PetscCall((*h->ops.getloads)(h->ctx, Q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ZeroLoads_Host(CoupleSurface surface)
+{
+  Host *h = (Host *)surface->ctx;
+  PetscReal *Q;
+
+  PetscFunctionBegin;
+  PetscCall(GetLoads(h, &Q));
+  PetscCall(PetscArrayzero(Q, 3 * h->nnodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Force F and moment M about its point of section s onto the nodes. */
+static void Project(const Host *h, PetscInt s, const PetscReal F[3], const PetscReal M[3], PetscReal *Q)
+{
+  PetscReal g[3];
+
+  if (h->slope) CoupleCross(M, h->t + 3 * s, g);
+  for (PetscInt e = h->rowstart[s]; e < h->rowstart[s + 1]; e++)
+    for (int k = 0; k < 3; k++) {
+      PetscReal *q = Q + 3 * h->node[e] + k;
+      *q += h->shape[e] * F[k];
+      if (h->slope) *q += h->slope[e] * g[k] / h->len[s];
+    }
+}
+
+/* What the generalised forces added amount to: force, moment about the origin, power; subtracted from the marker totals. */
+static void Audit(const Host *h, const PetscReal *Q, const PetscReal axial[3], CoupleAudit *audit)
+{
+  PetscReal F[3] = {0, 0, 0}, M[3] = {axial[0], axial[1], axial[2]}, power = 0.0;
+
+  for (PetscInt j = 0; j < h->nnodes; j++) {
+    PetscReal c[3];
+    CoupleCross(h->q + 3 * j, Q + 3 * j, c);
+    for (int k = 0; k < 3; k++) {
+      if (!h->direction[j]) F[k] += Q[3 * j + k];
+      M[k] += c[k];
+      power += Q[3 * j + k] * h->qdot[3 * j + k];
+    }
+  }
+  for (int k = 0; k < 3; k++) {
+    audit->force_lost[k] = audit->force[k] - F[k];
+    audit->moment_lost[k] = audit->moment[k] - M[k];
+  }
+  audit->power_lost = audit->power - power;
+}
+
+static PetscErrorCode ApplyForces_Host(CoupleSurface surface, const PetscReal *f, CoupleAudit *audit)
+{
+  Host *h = (Host *)surface->ctx;
+  PetscReal *Q, axial[3] = {0, 0, 0};
+  PetscInt i = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(h->Q, 3 * h->nnodes));
+  for (PetscInt s = 0; s < h->nsections; s++) {
+    PetscReal F[3] = {0, 0, 0}, M[3] = {0, 0, 0}, twist;
+    for (; i < h->n && h->section[i] == s; i++) {
+      PetscReal c[3];
+      CoupleCross(h->o + 3 * i, f + 3 * i, c);
+      for (int k = 0; k < 3; k++) {
+        F[k] += f[3 * i + k];
+        M[k] += c[k];
+      }
+    }
+    Project(h, s, F, M, h->Q);
+    if (!h->slope) continue;
+    twist = CoupleDot(M, h->t + 3 * s);
+    audit->twist += twist;
+    for (int k = 0; k < 3; k++) axial[k] += twist * h->t[3 * s + k];
+  }
+  Audit(h, h->Q, axial, audit);
+  PetscCall(GetLoads(h, &Q));
+  if (Q != h->Q)
+    for (PetscInt j = 0; j < 3 * h->nnodes; j++) Q[j] += h->Q[j];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The normals of the sections carried along to the structure's present state. */
+static PetscErrorCode CarryNormals(Host *h)
+{
+  const PetscReal *qddot;
+  SectionMotion m;
+
+  PetscFunctionBegin;
+  if (!h->slope) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Extrapolate(h, 0.0, &qddot));
+  for (PetscInt s = 0; s < h->nsections; s++) {
+    MoveSection(h, s, qddot, &m);
+    Transport(h, h->t + 3 * s, h->d1 + 3 * s);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Advance_Host(CoupleSurface surface, PetscReal t)
+{
+  Host *h = (Host *)surface->ctx;
+  PetscReal *Q, now;
+
+  PetscFunctionBegin;
+  PetscCall(GetLoads(h, &Q));
+  PetscCall((*h->ops.advance)(h->ctx, t, Q));
+  PetscCall((*h->ops.getstate)(h->ctx, &now, NULL, NULL, NULL));
+  PetscCheck(PetscAbsReal(now - t) <= 1e-12 * PetscMax(1.0, PetscAbsReal(t)), surface->comm, PETSC_ERR_USER,
+             "surface %s: the host advanced to t = %.15g s when asked for %.15g s", surface->name, (double)now, (double)t);
+  PetscCall(CarryNormals(h));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Momentum_Host(CoupleSurface surface, PetscReal p[3], PetscReal weight[3], PetscReal support[3])
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  PetscCall((*h->ops.momentum)(h->ctx, p, weight, support));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StateSize_Host(CoupleSurface surface, PetscInt *n)
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  PetscCall((*h->ops.statesize)(h->ctx, n));
+  if (h->slope) *n += 3 * h->nsections;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Save_Host(CoupleSurface surface, PetscReal *state)
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  if (h->slope) {
+    PetscCall(PetscArraycpy(state, h->d1, 3 * h->nsections));
+    state += 3 * h->nsections;
+  }
+  PetscCall((*h->ops.save)(h->ctx, state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Load_Host(CoupleSurface surface, const PetscReal *state)
+{
+  Host *h = (Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  if (h->slope) {
+    PetscCall(PetscArraycpy(h->d1, state, 3 * h->nsections));
+    state += 3 * h->nsections;
+  }
+  PetscCall((*h->ops.load)(h->ctx, state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View_Host(CoupleSurface surface, PetscViewer viewer)
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  if (h->ops.view)
+    PetscCall((*h->ops.view)(h->ctx, viewer));
+  else
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer, "  host %s: %" PetscInt_FMT " nodes, %" PetscInt_FMT " sections, %" PetscInt_FMT " markers\n", surface->name,
+        h->nnodes, h->nsections, h->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy_Host(CoupleSurface surface)
+{
+  Host *h = (Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  if (h->ops.destroy) PetscCall((*h->ops.destroy)(h->ctx));
+  PetscCall(PetscFree4(h->rowstart, h->node, h->section, h->direction));
+  PetscCall(PetscFree(h->shape));
+  PetscCall(PetscFree(h->slope));
+  PetscCall(PetscFree4(h->offset, h->x0, h->volume, h->depth));
+  PetscCall(PetscFree4(h->d1, h->Q, h->q, h->qdot));
+  PetscCall(PetscFree4(h->r, h->t, h->len, h->o));
+  PetscCall(PetscFree(surface->ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers in range, sums of shape functions. */
+static PetscErrorCode CheckRows(MPI_Comm comm, const char name[], const CoupleHostSpec *p)
+{
+  PetscFunctionBegin;
+  PetscCheck(p->dim == 2 || p->dim == 3, comm, PETSC_ERR_ARG_OUTOFRANGE, "surface %s: dim = %" PetscInt_FMT " must be 2 or 3",
+             name, p->dim);
+  PetscCheck(p->nnodes > 0 && p->nsections > 0 && p->nmarkers > 0, comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "surface %s: nnodes = %" PetscInt_FMT ", nsections = %" PetscInt_FMT ", nmarkers = %" PetscInt_FMT
+             " must all be > 0",
+             name, p->nnodes, p->nsections, p->nmarkers);
+  for (PetscInt s = 0; s < p->nsections; s++) {
+    PetscReal one = 0.0, zero = 0.0, size = 1.0;
+    PetscCheck(p->rowstart[s + 1] > p->rowstart[s] && p->rowstart[0] == 0, comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "surface %s: rowstart must begin with 0 and rise; it does not at section %" PetscInt_FMT, name, s);
+    for (PetscInt e = p->rowstart[s]; e < p->rowstart[s + 1]; e++) {
+      PetscCheck(p->node[e] >= 0 && p->node[e] < p->nnodes, comm, PETSC_ERR_ARG_OUTOFRANGE,
+                 "surface %s, section %" PetscInt_FMT ": node %" PetscInt_FMT " must be in [0, %" PetscInt_FMT ")", name, s,
+                 p->node[e], p->nnodes);
+      if (p->direction && p->direction[p->node[e]]) continue;
+      one += p->shape[e];
+      if (!p->slope) continue;
+      zero += p->slope[e];
+      size += PetscAbsReal(p->slope[e]);
+    }
+    PetscCheck(PetscAbsReal(one - 1.0) <= 1e-10, comm, PETSC_ERR_ARG_INCOMP,
+               "surface %s, section %" PetscInt_FMT ": shape functions of the position nodes add up to %.12g; must be 1", name, s,
+               (double)one);
+    PetscCheck(PetscAbsReal(zero) <= 1e-10 * size, comm, PETSC_ERR_ARG_INCOMP,
+               "surface %s, section %" PetscInt_FMT ": slopes of the position nodes add up to %.12g; must be 0", name, s,
+               (double)zero);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckMarkers(MPI_Comm comm, const char name[], const CoupleHostSpec *p)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < p->nmarkers; i++) {
+    PetscCheck(p->section[i] >= (i ? p->section[i - 1] : 0) && p->section[i] < p->nsections, comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "surface %s, marker %" PetscInt_FMT ": section %" PetscInt_FMT " must be in [0, %" PetscInt_FMT ") and ascend",
+               name, i, p->section[i], p->nsections);
+    PetscCheck(p->slope || !p->offset || (p->offset[2 * i] == 0.0 && p->offset[2 * i + 1] == 0.0), comm, PETSC_ERR_ARG_INCOMP,
+               "surface %s, marker %" PetscInt_FMT ": offset (%g, %g) m needs slopes; without them it must be 0", name, i,
+               (double)p->offset[2 * i], (double)p->offset[2 * i + 1]);
+    PetscCheck(p->volume[i] > 0.0 && !PetscIsInfOrNanReal(p->volume[i]), comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "surface %s, marker %" PetscInt_FMT ": volume = %g must be > 0", name, i, (double)p->volume[i]);
+    PetscCheck(p->depth[i] >= 0.0 && !PetscIsInfOrNanReal(p->depth[i]), comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "surface %s, marker %" PetscInt_FMT ": depth = %g m must be >= 0", name, i, (double)p->depth[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopySpec(Host *h, const CoupleHostSpec *p)
+{
+  const PetscInt ne = p->rowstart[p->nsections], ns = p->nsections, n = p->nmarkers, nn = p->nnodes;
+
+  PetscFunctionBegin;
+  h->dim = p->dim;
+  h->nnodes = nn;
+  h->nsections = ns;
+  h->n = n;
+  PetscCall(PetscCalloc4(ns + 1, &h->rowstart, ne, &h->node, n, &h->section, nn, &h->direction));
+  PetscCall(PetscMalloc1(ne, &h->shape));
+  if (p->slope) PetscCall(PetscMalloc1(ne, &h->slope));
+  PetscCall(PetscCalloc4(2 * n, &h->offset, 3 * n, &h->x0, n, &h->volume, n, &h->depth));
+  PetscCall(PetscCalloc4(3 * ns, &h->d1, 3 * nn, &h->Q, 3 * nn, &h->q, 3 * nn, &h->qdot));
+  PetscCall(PetscCalloc4(3 * ns, &h->r, 3 * ns, &h->t, ns, &h->len, 3 * n, &h->o));
+  PetscCall(PetscArraycpy(h->rowstart, p->rowstart, ns + 1));
+  PetscCall(PetscArraycpy(h->node, p->node, ne));
+  PetscCall(PetscArraycpy(h->shape, p->shape, ne));
+  PetscCall(PetscArraycpy(h->section, p->section, n));
+  PetscCall(PetscArraycpy(h->volume, p->volume, n));
+  PetscCall(PetscArraycpy(h->depth, p->depth, n));
+  if (p->direction) PetscCall(PetscArraycpy(h->direction, p->direction, nn));
+  if (p->slope) PetscCall(PetscArraycpy(h->slope, p->slope, ne));
+  if (p->offset) PetscCall(PetscArraycpy(h->offset, p->offset, 2 * n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A unit vector normal to t, along the coordinate axis least aligned with it. */
+static void AnyNormal(const PetscReal t[3], PetscReal d1[3])
+{
+  int m = 0;
+  for (int k = 1; k < 3; k++)
+    if (PetscAbsReal(t[k]) < PetscAbsReal(t[m])) m = k;
+  for (int k = 0; k < 3; k++) d1[k] = (k == m ? 1.0 : 0.0) - t[m] * t[k];
+  const PetscReal n = PetscSqrtReal(CoupleDot(d1, d1));
+  for (int k = 0; k < 3; k++) d1[k] /= n;
+}
+
+/* First normals, and the markers' rest positions. */
+static PetscErrorCode PlaceMarkers(CoupleSurface surface)
+{
+  Host *h = (Host *)surface->ctx;
+  const PetscReal *qddot;
+  PetscReal *v, *a;
+
+  PetscFunctionBegin;
+  PetscCall(Extrapolate(h, 0.0, &qddot));
+  for (PetscInt s = 0; s < h->nsections && h->slope; s++) {
+    SectionMotion m;
+    MoveSection(h, s, qddot, &m);
+    PetscCheck(h->len[s] > 0.0 && !PetscIsInfOrNanReal(h->len[s]), surface->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "surface %s, section %" PetscInt_FMT ": the tangent has the length %g; must be > 0", surface->name, s,
+               (double)h->len[s]);
+    AnyNormal(h->t + 3 * s, h->d1 + 3 * s);
+    Transport(h, h->t + 3 * s, h->d1 + 3 * s);
+  }
+  PetscCall(PetscMalloc2(3 * h->n, &v, 3 * h->n, &a));
+  PetscCall(Kinematics_Host(surface, 0.0, h->x0, v, a));
+  PetscCall(PetscFree2(v, a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceCreateHost(MPI_Comm comm, const char name[], const CoupleHostSpec *spec, const CoupleHostOps *ops,
+                                       void *ctx, CoupleSurface *surface)
+{
+  CoupleSurfaceOps sops = {.getmarkers = GetMarkers_Host,
+                           .kinematics = Kinematics_Host,
+                           .zeroloads = ZeroLoads_Host,
+                           .applyforces = ApplyForces_Host,
+                           .advance = Advance_Host,
+                           .view = View_Host,
+                           .destroy = Destroy_Host};
+  Host *h;
+
+  PetscFunctionBegin;
+  PetscCheck(ops->getstate && ops->advance, comm, PETSC_ERR_ARG_NULL, "surface %s: getstate and advance must be given", name);
+  PetscCheck(!ops->statesize == !ops->save && !ops->save == !ops->load, comm, PETSC_ERR_ARG_NULL,
+             "surface %s: statesize, save and load must be given together or not at all", name);
+  PetscCall(CheckRows(comm, name, spec));
+  PetscCall(CheckMarkers(comm, name, spec));
+  if (ops->momentum) sops.momentum = Momentum_Host;
+  if (ops->statesize) {
+    sops.statesize = StateSize_Host;
+    sops.save = Save_Host;
+    sops.load = Load_Host;
+  }
+  PetscCall(PetscNew(&h));
+  h->ops = *ops;
+  h->ctx = ctx;
+  PetscCall(CopySpec(h, spec));
+  PetscCall(CoupleSurfaceCreate(comm, name, &sops, h, surface));
+  PetscCall(PlaceMarkers(*surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckHost(CoupleSurface surface)
+{
+  PetscFunctionBegin;
+  PetscCheck(surface->ops.kinematics == Kinematics_Host, surface->comm, PETSC_ERR_ARG_WRONG,
+             "surface %s is neither a host's (CoupleSurfaceCreateHost()) nor a beam's", surface->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceHostGetLoads(CoupleSurface surface, const PetscReal **Q)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckHost(surface));
+  *Q = ((Host *)surface->ctx)->Q;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceHostGetSpec(CoupleSurface surface, CoupleHostSpec *spec)
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(CheckHost(surface));
+  *spec = (CoupleHostSpec){h->dim,   h->nnodes, h->direction, h->nsections, h->rowstart, h->node, h->shape,
+                           h->slope, h->n,      h->section,   h->offset,    h->volume,   h->depth};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
