@@ -133,6 +133,8 @@ static PetscErrorCode CheckParameters(Sph sph)
                (double)(p->hi[k] - p->lo[k]), (double)(2.1 * p->h));
   }
   PetscCheck(sph->nfluid > 0, sph->comm, PETSC_ERR_ARG_WRONGSTATE, "the domain holds no fluid: no fluid marker was added");
+  PetscCheck(p->slip == SPH_SLIP_NONE || p->wall == SPH_WALL_ADAMI, sph->comm, PETSC_ERR_ARG_INCOMP,
+             "sph_slip = free: needs sph_wall adami, it is %s", SphWallTypes[p->wall]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,7 +172,8 @@ PetscErrorCode SphSetUp(Sph sph)
       sph->m[i] = sph->par.rho0 * (1.0 + sph->st.s[i]) * pow(sph->par.dp, (double)sph->par.dim);
     } else {
       sph->m[i] *= sph->par.rho0;
-      sph->wallratio[i] = SphWallRatio(&sph->par, sph->wallratio[i]);
+      if (sph->wallratio[i] != SPH_WALLRATIO_SLIP)
+        sph->wallratio[i] = sph->par.slip == SPH_SLIP_FREE ? SPH_WALLRATIO_SLIP : SphWallRatio(&sph->par, sph->wallratio[i]);
     }
   }
   PetscCall(SphAllocateArrays(sph, sph->ops == &SphOps_CPU ? PETSC_TRUE : PETSC_FALSE));
@@ -197,6 +200,21 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
                            "frond: warning: sph_dt = %g s exceeds the stable step %g s (%s limit) at step %" PetscInt_FMT "\n",
                            (double)dt, (double)limit, which, sph->step));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Speeds near c_s compress the fluid: by about 4 % at c_s/5. Warned at the first time and at each doubling. */
+static PetscErrorCode WarnSpeed(Sph sph, PetscReal vmax)
+{
+  const PetscReal cs = sph->par.cs;
+
+  PetscFunctionBegin;
+  if (vmax <= PetscMax(0.2 * cs, 2.0 * sph->speedwarned)) PetscFunctionReturn(PETSC_SUCCESS);
+  sph->speedwarned = vmax;
+  PetscCall(PetscFPrintf(sph->comm, PETSC_STDERR,
+                         "frond: warning: speed %g m/s at step %" PetscInt_FMT " is %.2g of the speed of sound %g m/s: the fluid is "
+                         "compressed too much; sph_sound_speed should be at least %g m/s\n",
+                         (double)vmax, sph->step, (double)(vmax / cs), (double)cs, (double)(10.0 * vmax)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,6 +247,10 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
   PetscCheck(PetscIsNormalReal(limit), sph->comm, PETSC_ERR_FP,
              "non-finite velocity or acceleration at step %" PetscInt_FMT ", time %g s: the stable step is %g s", sph->step,
              (double)sph->t, (double)limit);
+  PetscCall(WarnSpeed(sph, vmax));
+  PetscCheck(limit >= p->dtmin, sph->comm, PETSC_ERR_CONV_FAILED,
+             "the stable step %g s (%s limit) at step %" PetscInt_FMT ", time %g s, is below sph_dt_min = %g s", (double)limit, which,
+             sph->step, (double)sph->t, (double)p->dtmin);
   *dt = limit;
   if (p->dtfixed > 0.0) {
     PetscCall(FixedTimeStep(sph, limit, which));

@@ -44,6 +44,10 @@ typedef enum { SPH_SHIFTING_NONE, SPH_SHIFTING_SUN } SphShiftingType;
 /* sphstep.h; rk2 and symplectic evaluate two right-hand sides per step, verlet one. */
 typedef enum { SPH_INTEGRATOR_RK2, SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC } SphIntegratorType;
 
+/* Slip of the fluid along boundary markers (wall adami only): none, or free, no friction (Adami et al. 2012, Sect. 3.2). */
+typedef enum { SPH_SLIP_NONE, SPH_SLIP_FREE } SphSlipType;
+
+FROND_EXTERN const char *const SphSlipTypes[];
 FROND_EXTERN const char *const SphKernelTypes[];
 FROND_EXTERN const char *const SphPrecisions[];
 FROND_EXTERN const char *const SphWallTypes[];
@@ -82,11 +86,16 @@ FROND_EXTERN PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrat
 FROND_EXTERN PetscErrorCode SphSetKernel(Sph sph, SphKernelType kernel);
 FROND_EXTERN PetscErrorCode SphSetPrecision(Sph sph, SphPrecision precision);
 FROND_EXTERN PetscErrorCode SphSetWall(Sph sph, SphWallType wall);
+/* Of all boundary markers; SphSetGroupSlip() for one group, after SphAddBoundary() and before SphSetUp(). */
+FROND_EXTERN PetscErrorCode SphSetSlip(Sph sph, SphSlipType slip);
+FROND_EXTERN PetscErrorCode SphSetGroupSlip(Sph sph, PetscInt group, SphSlipType slip);
 FROND_EXTERN PetscErrorCode SphSetBodyForce(Sph sph, const PetscReal f[3]);
 FROND_EXTERN PetscErrorCode SphSetDomain(Sph sph, const PetscReal lo[3], const PetscReal hi[3]);
 FROND_EXTERN PetscErrorCode SphSetPeriodic(Sph sph, const PetscBool periodic[3]);
 FROND_EXTERN PetscErrorCode SphSetTimeStep(Sph sph, PetscReal dt);
 FROND_EXTERN PetscErrorCode SphSetCFL(Sph sph, PetscReal cfl);
+/* A stable step below this floor (s) ends the run with PETSC_ERR_CONV_FAILED; 0 (default) for none. */
+FROND_EXTERN PetscErrorCode SphSetMinTimeStep(Sph sph, PetscReal dtmin);
 FROND_EXTERN PetscErrorCode SphSetCheckEvery(Sph sph, PetscInt every);
 FROND_EXTERN PetscErrorCode SphSetFromOptions(Sph sph);
 FROND_EXTERN PetscErrorCode SphSetUp(Sph sph);

@@ -183,9 +183,9 @@ SPH_INLINE void Shift(const int kernel, const Sweep *w, const List *l, int i)
   }
   const double u = sqrt((double)(px * px + py * py + pz * pz)), most = 0.5 * par->vmax;
   const double keep = sph_shift_keep((double)div, (double)par->dim) * (u > most ? most / u : 1.0);
-  w->sph->rate.dv[0][i] = (par->zeta > 0.0 ? w->sph->rate.dv[0][i] : 0.0) + keep * (double)px;
-  w->sph->rate.dv[1][i] = (par->zeta > 0.0 ? w->sph->rate.dv[1][i] : 0.0) + keep * (double)py;
-  w->sph->rate.dv[2][i] = (par->zeta > 0.0 ? w->sph->rate.dv[2][i] : 0.0) + keep * (double)pz;
+  w->sph->rate.dv[0][i] += keep * (double)px;
+  w->sph->rate.dv[1][i] += keep * (double)py;
+  w->sph->rate.dv[2][i] += keep * (double)pz;
 }
 
 /* Pressure (as density) and velocity of a boundary marker: Adami, Hu, Adams, J. Comput. Phys. 231 (2012), Eqs. 22-27. */
@@ -349,13 +349,13 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
 
   Pointers(cpu, w.q);
   if (sweep == SPH_SWEEP_RATES)
-    fluid = boundary = rates[p->kernel][p->viscosity][SphCpuTwoVelocities(p)][p->diffusion != SPH_DIFFUSION_NONE];
+    fluid = boundary = rates[p->kernel][p->viscosity][SphTwoVelocities(p)][p->diffusion != SPH_DIFFUSION_NONE];
   else if (sweep == SPH_SWEEP_SHIFT)
     fluid = p->kernel ? Shift_1 : Shift_0;
   else if (sweep == SPH_SWEEP_SUM)
     fluid = p->kernel ? Sum_1 : Sum_0;
   else {
-    if (p->zeta > 0.0) fluid = p->kernel ? AuxFluid_1 : AuxFluid_0;
+    if (p->zeta > 0.0 || p->shifting != SPH_SHIFTING_NONE) fluid = p->kernel ? AuxFluid_1 : AuxFluid_0;
     if (p->wall == SPH_WALL_ADAMI) boundary = p->kernel ? AuxBoundary_1 : AuxBoundary_0;
   }
 #pragma omp parallel num_threads((int)cpu->threads)

@@ -34,6 +34,8 @@ typedef struct {
   PetscBool periodic[3];
   PetscReal dtfixed; /* s, or PETSC_DECIDE */
   PetscReal cfl;
+  PetscReal dtmin;   /* s; 0 for none */
+  int       slip;    /* SphSlipType */
   PetscInt  reinitevery, checkevery;
   int       kernel; /* SphKernelType */
   int       precision, wall, reinit;
@@ -125,6 +127,7 @@ struct _p_Sph {
 
   PetscReal t, dt;              /* time and current step, s */
   PetscInt  step;
+  PetscReal speedwarned;        /* the speed at the last warning about the speed of sound, m/s */
   PetscBool insidestep, fixedwarned, evaluated; /* evaluated: second-stage rates are there already */
   PetscInt  verletstep;         /* steps since stn was last invalid: 0 asks for an Euler step */
   PetscReal dtold, verletspan;  /* s; span of the Verlet step in progress, 0 for Euler */
@@ -150,7 +153,7 @@ extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *c
 /* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
 static inline int SphTwoVelocities(const SphParams *p)
 {
-  return p->zeta > 0.0 || p->wall == SPH_WALL_ADAMI;
+  return p->zeta > 0.0 || p->shifting != SPH_SHIFTING_NONE || p->wall == SPH_WALL_ADAMI;
 }
 
 /* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those that no term reads. */
@@ -158,6 +161,8 @@ extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share);
 extern PetscErrorCode SphFreeArrays(Sph sph);
 
 /* sphwall.c: factor r in v_ext = v_b + r (v_b - <v>) for a marker `depth` below a flat surface. */
+/* The factor -1 makes v_ext = <v>, so that no friction acts: free slip. */
+#define SPH_WALLRATIO_SLIP (-1.0)
 extern PetscReal SphWallRatio(const SphParams *par, PetscReal depth);
 /* Set wnorm, fnorm and mupair from kernel, h, dp, mu. */
 extern void SphLattice(SphParams *par);

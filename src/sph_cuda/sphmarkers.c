@@ -187,6 +187,22 @@ PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  SphSetGroupSlip - Slip along the markers of one boundary group.
+@*/
+PetscErrorCode SphSetGroupSlip(Sph sph, PetscInt group, SphSlipType slip)
+{
+  PetscFunctionBegin;
+  PetscCheck(!sph->setup, sph->comm, PETSC_ERR_ORDER, "the slip of a group cannot change after SphSetUp()");
+  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCheck(slip == SPH_SLIP_NONE || sph->par.wall == SPH_WALL_ADAMI, sph->comm, PETSC_ERR_ARG_INCOMP,
+             "free slip needs sph_wall adami, it is %s", SphWallTypes[sph->par.wall]);
+  for (PetscInt i = sph->groupstart[group]; i < sph->groupstart[group + 1] && slip == SPH_SLIP_FREE; i++)
+    sph->wallratio[i] = SPH_WALLRATIO_SLIP;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphGetCounts(Sph sph, PetscInt *fluid, PetscInt *boundary, PetscInt *left)
 {
   PetscFunctionBegin;

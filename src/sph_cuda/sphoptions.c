@@ -8,6 +8,7 @@ const char *const SphReinitTypes[] = {"none", "sum", "shepard", "SphReinitType",
 const char *const SphViscosityTypes[] = {"eq6", "morris", "artificial", "SphViscosityType", "SPH_VISCOSITY_", NULL};
 const char *const SphDiffusionTypes[] = {"none", "molteni", "fourtakas", "SphDiffusionType", "SPH_DIFFUSION_", NULL};
 const char *const SphIntegratorTypes[] = {"rk2", "verlet", "symplectic", "SphIntegratorType", "SPH_INTEGRATOR_", NULL};
+const char *const SphSlipTypes[] = {"none", "free", "SphSlipType", "SPH_SLIP_", NULL};
 const char *const SphShiftingTypes[] = {"none", "sun", "SphShiftingType", "SPH_SHIFTING_", NULL};
 
 static PetscErrorCode CheckEditable(Sph sph, const char *name)
@@ -256,6 +257,14 @@ PetscErrorCode SphSetWall(Sph sph, SphWallType wall)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphSetSlip(Sph sph, SphSlipType slip)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckEditable(sph, "slip"));
+  sph->par.slip = (int)slip;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphSetBodyForce(Sph sph, const PetscReal f[3])
 {
   PetscFunctionBegin;
@@ -300,6 +309,15 @@ PetscErrorCode SphSetCFL(Sph sph, PetscReal cfl)
   PetscFunctionBegin;
   PetscCheck(cfl > 0.0 && cfl <= 1.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_cfl = %g: must be in (0, 1]", (double)cfl);
   sph->par.cfl = cfl;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphSetMinTimeStep(Sph sph, PetscReal dtmin)
+{
+  PetscFunctionBegin;
+  PetscCheck(dtmin >= 0.0 && !PetscIsInfOrNanReal(dtmin), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dt_min = %g: must be >= 0 (s)",
+             (double)dtmin);
+  sph->par.dtmin = dtmin;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -423,6 +441,12 @@ static PetscErrorCode OptionsForms(Sph sph, PetscOptionItems *PetscOptionsObject
                              SphShiftingTypes, e, &e, &set));
   PetscCall(PetscOptionsReal("-sph_shifting_factor", "Factor of the shifting velocity", "SphSetShifting", r, &r, &set2));
   if (set || set2) PetscCall(SphSetShifting(sph, (SphShiftingType)e, r));
+  PetscCall(PetscOptionsEnum("-sph_slip", "Slip along boundary markers: none, or free (no friction; sph_wall adami)", "SphSetSlip",
+                             SphSlipTypes, (PetscEnum)p->slip, &e, &set));
+  if (set) PetscCall(SphSetSlip(sph, (SphSlipType)e));
+  PetscCall(PetscOptionsReal("-sph_dt_min", "Floor of the time step, below which the run ends (s); 0 for none", "SphSetMinTimeStep",
+                             p->dtmin, &r, &set));
+  if (set) PetscCall(SphSetMinTimeStep(sph, r));
   PetscCall(PetscOptionsEnum("-sph_integrator", "Time integration of the fluid", "SphSetIntegrator", SphIntegratorTypes, (PetscEnum)p->integrator, &e, &set));
   if (set) PetscCall(SphSetIntegrator(sph, (SphIntegratorType)e));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -463,8 +487,8 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
       p->reinitevery));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_viscosity_type %s, sph_artificial_alpha %g, sph_density_diffusion %s, sph_density_diffusion_delta %g, sph_integrator %s\n", SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
                                    (double)p->delta, SphIntegratorTypes[p->integrator]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_shifting %s, sph_shifting_factor %g\n", SphShiftingTypes[p->shifting],
-                                   (double)p->shiftfactor));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_shifting %s, sph_shifting_factor %g, sph_slip %s, sph_dt_min %g s\n",
+                                   SphShiftingTypes[p->shifting], (double)p->shiftfactor, SphSlipTypes[p->slip], (double)p->dtmin));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
   if (p->dtfixed > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dt %g s (fixed)\n", (double)p->dtfixed));
