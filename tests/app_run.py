@@ -262,6 +262,26 @@ def test_mesh():
         check(np.array_equal(*sites), "fluid sites around the mesh and the box: %d, %d" % (len(sites[0]), len(sites[1])))
 
 
+def test_carve():
+    """Fluid sites against brute force: a turned box across two periodic faces, and the rod."""
+    edge, centre, axis, angle = np.array([0.11, 0.17, 0.12]), np.array([0.39, 0.39, 0.1]), np.array([1, 1, 0]) / np.sqrt(2), 0.5
+    frond.runs("run", "small.yaml", "-output_dir", "carve", "-time_end", "0.001", "-body_ball_shape", "box", "-body_ball_size", "0.11,0.17,0.12",
+               "-body_ball_position", "0.39,0.39,0.1", "-body_ball_axisangle", "1,1,0,0.5")
+    K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    R = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K  # Rodrigues
+    sites = (np.stack(np.meshgrid(*[np.arange(10)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.5) * 0.04
+    inside = np.zeros(len(sites), bool)
+    for shift in np.ndindex(3, 3):
+        x = sites - 0.4 * (np.array([*shift, 1]) - 1)
+        inside |= (np.abs((x - centre) @ R) < edge / 2).all(axis=1)
+        inside |= (x[:, 0] > 0.05) & (x[:, 0] < 0.2) & (np.hypot(x[:, 1] - 0.2, x[:, 2] - 0.2) < 0.03)
+    with h5py.File(frond.path("carve", "frame_00000.h5")) as h:
+        got = h["markers/position"][:][h["markers/group"][:] == -1]
+    order = lambda a: a[np.lexsort(np.round(a / 0.02).T)]
+    check(len(got) == (~inside).sum() and np.allclose(order(got), order(sites[~inside]), atol=1e-6), "fluid sites: %d, by brute force %d" % (len(got), (~inside).sum()))
+    check(inside.sum() > 20, "the structures hold %d sites" % inside.sum())
+
+
 def test_ranks():
     """One rank for now: two are refused in one line."""
     if not shutil.which("mpirun"):
@@ -285,5 +305,6 @@ test_kill()
 test_full_disk()
 test_lid()
 test_mesh()
+test_carve()
 test_ranks()
 apptest.report()

@@ -239,6 +239,32 @@ static PetscErrorCode TestModes(const char name[], AncfEnd end0, AncfEnd end1, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  Modes without stiffness of a free straight beam: three translations and two rotations. Two axial points miss the axial strain
+  P_2(xi) of a uniform change of all gradients, which is then a sixth: why three is the default.
+*/
+static PetscErrorCode TestRank(const char options[], PetscInt expected)
+{
+  AncfBeamSpec s;
+  Ancf a;
+  PetscReal *w2, unit;
+  PetscInt n, zeros = 0;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &s));
+  s.end0 = ANCF_END_FREE;
+  PetscCall(BeamCreate(&s, 0, options, &a));
+  PetscCall(AncfGetBeam(a, 0, &s, NULL, NULL));
+  unit = s.EI / s.rhoA; /* the lowest elastic mode has 22.4^2 of these */
+  PetscCall(Eigenvalues(a, 500 * unit, &n, &w2));
+  for (PetscInt i = 0; i < n; i++) zeros += w2[i] < unit;
+  printf("free beam %-55s %d modes without stiffness\n", options, (int)zeros);
+  TEST(zeros == expected, "%d modes without stiffness, expected %d", (int)zeros, (int)expected);
+  PetscCall(PetscFree(w2));
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* First mode by time integration: period of a small free vibration from the zero crossings of the tip. */
 static PetscErrorCode TestPeriod(void)
 {
@@ -294,6 +320,9 @@ int main(int argc, char **argv)
   PetscCall(TestModes("clamped-free", ANCF_END_CLAMP, ANCF_END_FREE, clamped));
   PetscCall(TestModes("pinned-pinned", ANCF_END_PIN, ANCF_END_PIN, pinned));
   PetscCall(TestModes("free-free", ANCF_END_FREE, ANCF_END_FREE, freefree));
+  PetscCall(TestRank("", 5));
+  PetscCall(TestRank(FIVE_THREE, 5));
+  PetscCall(TestRank("-ancf_quadrature_axial 2", 6));
   PetscCall(TestPeriod());
   PetscCall(PetscFinalize());
   return test_report();

@@ -112,6 +112,9 @@ PetscErrorCode AppInjectFault(App *app);
 /* Position and velocity (m, m/s) at material coordinate s (m) of a beam, and r,x. */
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3]);
 
+/* appfluid.c */
+PetscErrorCode AppFluidFill(App *app);
+
 /* appwall.c */
 PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth,
                              const PetscReal velocity[3], CoupleSurface *surface);

@@ -318,12 +318,13 @@ static PetscErrorCode Force_CUDA(Sph sph, PetscInt group, PetscReal *f)
 static PetscErrorCode Rates_CUDA(Sph sph)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
-  const SphCudaPairs *pairs = sph->par.precision == SPH_PRECISION_SINGLE ? &SphCudaPairs_single : &SphCudaPairs_double;
+  const SphCudaPairs *pairs = SphCudaGetPairs(sph);
 
   PetscFunctionBegin;
   PetscCall(SphCudaFlushMotion(sph));
   PetscCall(PetscLogEventBegin(SPH_Aux, 0, 0, 0, 0));
-  if (sph->par.zeta > 0.0 || sph->par.wall == SPH_WALL_ADAMI) PetscCall((*pairs->aux)(sph));
+  PetscCall((*pairs->prepare)(sph));
+  if (SphTwoVelocities(&sph->par)) PetscCall((*pairs->aux)(sph));
   PetscCall(SphCudaStageEnd(cuda));
   PetscCall(PetscLogEventEnd(SPH_Aux, 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(SPH_Rates, 0, 0, 0, 0));

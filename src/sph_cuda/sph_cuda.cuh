@@ -53,11 +53,17 @@ typedef struct {
 
 /* The operations that exist once per precision (sph_cudapairs.cuh). */
 typedef struct {
-  PetscErrorCode (*aux)(Sph);   /* XSPH velocity, Eq. 11; Adami extrapolation */
-  PetscErrorCode (*rates)(Sph); /* Eqs. 4-6 */
-  PetscErrorCode (*sum)(Sph);   /* Eq. 9 into rate.ds */
+  PetscErrorCode (*prepare)(Sph); /* what all of these read, from the state */
+  PetscErrorCode (*aux)(Sph);     /* XSPH velocity, Eq. 11; Adami extrapolation; before the rates */
+  PetscErrorCode (*rates)(Sph);   /* Eqs. 4-6 */
+  PetscErrorCode (*sum)(Sph);     /* Eq. 9 into rate.ds */
 } SphCudaPairs;
 extern const SphCudaPairs SphCudaPairs_single, SphCudaPairs_double;
+
+static inline const SphCudaPairs *SphCudaGetPairs(Sph sph)
+{
+  return sph->par.precision == SPH_PRECISION_SINGLE ? &SphCudaPairs_single : &SphCudaPairs_double;
+}
 
 extern PetscErrorCode SphCudaError(cudaError_t err, const char call[], const char function[], const char file[], int line);
 extern PetscErrorCode SphCudaStageEnd(SphCuda *cuda);

@@ -12,13 +12,10 @@ struct alignas(16) Real4 {
   sphreal x, y, z, w;
 };
 
-/* Prepared quantities, each n long: x and m; velocity that moves densities and s; velocity in the viscous term and p or p/rho^2.
- */
+/* Prepared quantities, each n long: x and m; velocity that moves densities and s; velocity in the viscous term and p/rho^2. */
 typedef struct {
   Real4 *xm, *us, *vp;
 } Prepared;
-
-typedef enum { SWEEP_AUX, SWEEP_RATES, SWEEP_SUM } SweepType;
 
 static __device__ __forceinline__ float Sqrt(float x)
 {
@@ -29,25 +26,49 @@ static __device__ __forceinline__ double Sqrt(double x)
   return sqrt(x);
 }
 
+/* s and p/rho^2 of marker i; double: a float holds too few digits of a small pressure. */
+static __device__ __forceinline__ sphreal PressureTerm(const SphParams &par, double s)
+{
+  const double rho = par.rho0 * (1.0 + s);
+
+  return (sphreal)((sph_eos(s, par.B, par.gamma) + par.pb) / (rho * rho));
+}
+
 /* Fill the prepared quantities from the state. */
-static __global__ void PrepareKernel(SphCudaArrays d, SphGrid g, SphParams par, SweepType sweep, Prepared q)
+static __global__ void PrepareKernel(SphCudaArrays d, SphGrid g, SphParams par, Prepared q)
 {
   const int i = SPH_ITEM;
 
   if (i >= d.n || d.group[i] == -2) return;
-  const int cell = (int)(d.key[i] >> 1), boundary = (int)(d.key[i] & 1u);
+  const int cell = (int)(d.key[i] >> 1);
   const int cc[3] = {cell % g.n[0], cell / g.n[0] % g.n[1], cell / (g.n[0] * g.n[1])};
-  const double s = d.st.s[i], rho = par.rho0 * (1.0 + s), p = sph_eos(s, par.B, par.gamma) + par.pb;
-  sphreal x[3], u[3], v[3];
+  const double s = d.st.s[i];
+  sphreal x[3], v[3];
   for (int k = 0; k < 3; k++) {
-    const double vel = d.st.v[k][i], moved = sweep == SWEEP_AUX ? vel : vel + d.rate.dv[k][i];
     x[k] = k < par.dim ? (sphreal)sph_cell_offset(&g, k, cc[k], d.st.x[k][i]) : (sphreal)0;
-    u[k] = (sphreal)(boundary ? vel : moved);
-    v[k] = (sphreal)(boundary ? moved : vel);
+    v[k] = (sphreal)d.st.v[k][i];
   }
   q.xm[i] = Real4{x[0], x[1], x[2], (sphreal)d.m[i]};
-  q.us[i] = Real4{u[0], u[1], u[2], (sphreal)s};
-  q.vp[i] = Real4{v[0], v[1], v[2], (sphreal)(sweep == SWEEP_RATES ? p / (rho * rho) : p)};
+  q.us[i] = Real4{v[0], v[1], v[2], (sphreal)s};
+  q.vp[i] = Real4{v[0], v[1], v[2], PressureTerm(par, s)};
+}
+
+/* What an auxiliary sweep changes: the velocity that moves fluid; velocity in the viscous term, density and pressure of
+ * boundaries. */
+static __global__ void PrepareAfterAuxKernel(SphCudaArrays d, SphParams par, Prepared q)
+{
+  const int i = SPH_ITEM;
+  sphreal w[3];
+
+  if (i >= d.n || d.group[i] == -2) return;
+  const double s = d.st.s[i];
+  for (int k = 0; k < 3; k++) w[k] = (sphreal)(d.st.v[k][i] + d.rate.dv[k][i]);
+  if (!(d.key[i] & 1u)) {
+    q.us[i] = Real4{w[0], w[1], w[2], (sphreal)s};
+    return;
+  }
+  q.us[i].w = (sphreal)s;
+  q.vp[i] = Real4{w[0], w[1], w[2], PressureTerm(par, s)};
 }
 
 static __device__ __forceinline__ sphreal Density(const SphPairConst &c, sphreal s)
@@ -63,6 +84,7 @@ static __device__ __forceinline__ void ForNeighbours(const SphGrid &g, const sph
 {
   const int cell = (int)(key >> 1), behind = (key & 1u) ? 1 : 2;
   const int cx = cell % g.n[0], cy = cell / g.n[0] % g.n[1], cz = cell / (g.n[0] * g.n[1]);
+  const sphreal edge[3] = {(sphreal)g.edge[0], (sphreal)g.edge[1], (sphreal)g.edge[2]};
 
   for (int oz = -1; oz <= 1; oz++) {
     const int nz = sph_cell_neighbour(&g, 2, cz, oz);
@@ -72,8 +94,7 @@ static __device__ __forceinline__ void ForNeighbours(const SphGrid &g, const sph
         const int nx = sph_cell_neighbour(&g, 0, cx, ox);
         if (nx < 0 || ny < 0 || nz < 0) continue;
         const int c = 2 * sph_cell_index(&g, nx, ny, nz), boundary = cellstart[c + 1], last = cellstart[c + behind];
-        const sphreal ex = x.x - (sphreal)(ox * g.edge[0]), ey = x.y - (sphreal)(oy * g.edge[1]),
-                      ez = x.z - (sphreal)(oz * g.edge[2]);
+        const sphreal ex = x.x - (sphreal)ox * edge[0], ey = x.y - (sphreal)oy * edge[1], ez = x.z - (sphreal)oz * edge[2];
         for (int j = cellstart[c]; j < last; j++) {
           const Real4 b = xm[j];
           const sphreal dx = ex - b.x, dy = ey - b.y, dz = ez - b.z, r2 = dx * dx + dy * dy + dz * dz;
@@ -137,9 +158,9 @@ static __device__ __forceinline__ void AuxBoundary(const SphCudaArrays &d, const
   WallSums s = {0, 0, {0, 0, 0}, {0, 0, 0}};
   auto term = [&](int j, bool, sphreal dx, sphreal dy, sphreal dz, sphreal r2, sphreal) {
     const Real4 b = q.us[j];
-    const sphreal w = sph_w(KERNEL, Sqrt(r2) * c.hinv), wr = w * Density(c, b.w);
+    const sphreal rho = Density(c, b.w), w = sph_w(KERNEL, Sqrt(r2) * c.hinv), wr = w * rho;
     s.w += w;
-    s.p += w * q.vp[j].w;
+    s.p += wr * rho * q.vp[j].w;
     s.v[0] += w * b.x;
     s.v[1] += w * b.y;
     s.v[2] += w * b.z;
@@ -233,23 +254,24 @@ static Prepared Quantities(const SphCuda *cuda)
   return q;
 }
 
-static PetscErrorCode Prepare(Sph sph, SweepType sweep)
+static PetscErrorCode Prepare(Sph sph)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
 
   PetscFunctionBegin;
-  SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, PrepareKernel, cuda->d, cuda->grid, sph->par, sweep, Quantities(cuda)));
+  SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, PrepareKernel, cuda->d, cuda->grid, sph->par, Quantities(cuda)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Also brings the prepared quantities to where the rates want them. */
 static PetscErrorCode Aux(Sph sph)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
 
   PetscFunctionBegin;
-  PetscCall(Prepare(sph, SWEEP_AUX));
   SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, sph->par.kernel ? AuxKernel<1> : AuxKernel<0>, cuda->d, cuda->grid, sph->par,
                         sph_pair_const(&sph->par), Quantities(cuda)));
+  SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, PrepareAfterAuxKernel, cuda->d, sph->par, Quantities(cuda)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,7 +285,6 @@ static PetscErrorCode Rates(Sph sph)
   const Prepared q = Quantities(cuda);
 
   PetscFunctionBegin;
-  PetscCall(Prepare(sph, SWEEP_RATES));
   SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, rates[sph->par.kernel][sph->par.viscosity], cuda->d, cuda->grid,
                         sph_pair_const(&sph->par), q.xm, q.us, q.vp));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,7 +296,6 @@ static PetscErrorCode Sum(Sph sph)
   const Prepared q = Quantities(cuda);
 
   PetscFunctionBegin;
-  PetscCall(Prepare(sph, SWEEP_SUM));
   SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, sph->par.kernel ? SumKernel<1> : SumKernel<0>, cuda->d, cuda->grid,
                         sph_pair_const(&sph->par), sph->par.reinit == SPH_REINIT_SHEPARD ? 1 : 0, q.xm, q.us));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,4 +2,4 @@
 typedef double sphreal;
 #include "sph_cudapairs.cuh"
 
-const SphCudaPairs SphCudaPairs_double = {Aux, Rates, Sum};
+const SphCudaPairs SphCudaPairs_double = {Prepare, Aux, Rates, Sum};

@@ -2,4 +2,4 @@
 typedef float sphreal;
 #include "sph_cudapairs.cuh"
 
-const SphCudaPairs SphCudaPairs_single = {Aux, Rates, Sum};
+const SphCudaPairs SphCudaPairs_single = {Prepare, Aux, Rates, Sum};

@@ -370,7 +370,8 @@ PetscErrorCode SphCudaReinit(Sph sph)
   SphCuda *cuda = (SphCuda *)sph->data;
 
   PetscFunctionBegin;
-  PetscCall((*(sph->par.precision == SPH_PRECISION_SINGLE ? &SphCudaPairs_single : &SphCudaPairs_double)->sum)(sph));
+  PetscCall((*SphCudaGetPairs(sph)->prepare)(sph));
+  PetscCall((*SphCudaGetPairs(sph)->sum)(sph));
   SphCallCUDA(SphLaunch(cuda->stream, cuda->d.n, ReinitKernel, cuda->d));
   cuda->hostcurrent = PETSC_FALSE;
   PetscCall(SphCudaStageEnd(cuda));
