@@ -146,7 +146,8 @@ static PetscErrorCode CheckBackend(Sph sph)
   PetscFunctionBegin;
   PetscCall(PetscStrcmp(sph->type, SPHCUDA, &cuda));
   PetscCheck(!cuda || sph->par.shifting == SPH_SHIFTING_NONE, sph->comm, PETSC_ERR_SUP,
-             "sph_shifting = %s: the cuda backend has none; use sph_type cpu or sph_shifting none", SphShiftingTypes[sph->par.shifting]);
+             "sph_shifting = %s: the cuda backend has none; use sph_type cpu or sph_shifting none",
+             SphShiftingTypes[sph->par.shifting]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -212,7 +213,8 @@ static PetscErrorCode WarnSpeed(Sph sph, PetscReal vmax)
   if (vmax <= PetscMax(0.2 * cs, 2.0 * sph->speedwarned)) PetscFunctionReturn(PETSC_SUCCESS);
   sph->speedwarned = vmax;
   PetscCall(PetscFPrintf(sph->comm, PETSC_STDERR,
-                         "frond: warning: speed %g m/s at step %" PetscInt_FMT " is %.2g of the speed of sound %g m/s: the fluid is "
+                         "frond: warning: speed %g m/s at step %" PetscInt_FMT
+                         " is %.2g of the speed of sound %g m/s: the fluid is "
                          "compressed too much; sph_sound_speed should be at least %g m/s\n",
                          (double)vmax, sph->step, (double)(vmax / cs), (double)cs, (double)(10.0 * vmax)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -249,8 +251,8 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
              (double)sph->t, (double)limit);
   PetscCall(WarnSpeed(sph, vmax));
   PetscCheck(limit >= p->dtmin, sph->comm, PETSC_ERR_CONV_FAILED,
-             "the stable step %g s (%s limit) at step %" PetscInt_FMT ", time %g s, is below sph_dt_min = %g s", (double)limit, which,
-             sph->step, (double)sph->t, (double)p->dtmin);
+             "the stable step %g s (%s limit) at step %" PetscInt_FMT ", time %g s, is below sph_dt_min = %g s", (double)limit,
+             which, sph->step, (double)sph->t, (double)p->dtmin);
   *dt = limit;
   if (p->dtfixed > 0.0) {
     PetscCall(FixedTimeStep(sph, limit, which));
