@@ -1,6 +1,6 @@
 /*
-  host_scene.h - one small tank for the tests of host bodies and of rolling back: water over a floor, periodic sideways, with a beam
-  clamped at the floor, a free ball, and a lid of markers that glides.
+  host_scene.h - one small tank for the tests of host bodies and of rolling back: water over a floor, periodic sideways, with a
+  beam clamped at the floor, a free ball, and a lid of markers that glides.
 
   The beam's surface is either the one built in, or made through the host interface from rows of its own.
 */

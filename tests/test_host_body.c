@@ -1,11 +1,11 @@
 /*
   test_host_body.c - structures of a host code through CoupleSurfaceCreateHost().
 
-  1. A beam that this program owns and drives through the host interface, with rows of its own, moves with the same bits as the one
-     built in.
-  2. Transfer of random forces to nodes in random motion, for solids in 2D and 3D (no slopes) and for lines (slopes): force, moment
-     and power are kept to round-off, the generalised forces do the virtual work of the marker forces, velocities and accelerations
-     are the derivatives of positions.
+  1. A beam that this program owns and drives through the host interface, with rows of its own, moves with the same bits as the
+  one built in.
+  2. Transfer of random forces to nodes in random motion, for solids in 2D and 3D (no slopes) and for lines (slopes): force,
+  moment and power are kept to round-off, the generalised forces do the virtual work of the marker forces, velocities and
+  accelerations are the derivatives of positions.
   3. A host that cannot be: one clear error each.
 */
 #include "host_scene.h"
@@ -32,7 +32,8 @@ static PetscErrorCode Advance_Own(void *ctx, PetscReal t, const PetscReal *Q)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows from the disks' places along the axis; the markers' places on the disks, volumes and depths are those of the beam built in. */
+/* Rows from the disks' places along the axis; the markers' places on the disks, volumes and depths are those of the beam built
+ * in. */
 static PetscErrorCode OwnBeam(Ancf ancf, PetscReal support, CoupleSurface *surface)
 {
   const CoupleHostOps ops = {.getstate = GetState_Own, .advance = Advance_Own};
@@ -47,8 +48,8 @@ static PetscErrorCode OwnBeam(Ancf ancf, PetscReal support, CoupleSurface *surfa
   PetscCall(CoupleSurfaceCreateBeam(ancf, 0, 3, DP, support, &builtin));
   PetscCall(CoupleSurfaceHostGetSpec(builtin, &spec));
   PetscCall(AncfGetBeam(ancf, 0, &beam, NULL, &l));
-  PetscCall(PetscMalloc5(spec.nsections + 1, &rowstart, 4 * spec.nsections, &node, spec.nnodes, &direction, 4 * spec.nsections, &S,
-                         4 * spec.nsections, &Sx));
+  PetscCall(PetscMalloc5(spec.nsections + 1, &rowstart, 4 * spec.nsections, &node, spec.nnodes, &direction, 4 * spec.nsections,
+                         &S, 4 * spec.nsections, &Sx));
   for (PetscInt j = 0; j < spec.nnodes; j++) direction[j] = j % 2 ? PETSC_TRUE : PETSC_FALSE;
   ds = l * (PetscReal)beam.elements / (PetscReal)spec.nsections;
   rowstart[0] = 0;
@@ -176,7 +177,7 @@ static void Fill(PetscInt dim, PetscBool line, Arrays *r, CoupleHostSpec *spec)
     }
   }
   for (PetscInt j = 0; j < nn; j++) r->direction[j] = line && j % 2 ? PETSC_TRUE : PETSC_FALSE;
-  *spec = (CoupleHostSpec){dim,   nn,        r->direction, NSEC,      r->rowstart, r->node, r->shape, line ? r->slope : NULL,
+  *spec = (CoupleHostSpec){dim,   nn,         r->direction, NSEC,      r->rowstart, r->node, r->shape, line ? r->slope : NULL,
                            NMARK, r->section, r->offset,    r->volume, r->depth};
 }
 
@@ -209,8 +210,9 @@ static void Totals(const PetscReal *x, const PetscReal *v, const PetscReal *f, C
 }
 
 /*
-  Central differences over +-dt: their error is dt^2/6 third derivatives, some hundred m/s^3 here, so below 1e-9 at dt = 3e-6; round-off
-  of positions adds eps/dt = 1e-10 to velocities. Accelerations: fourth derivatives some thousand, and the same round-off.
+  Central differences over +-dt: their error is dt^2/6 third derivatives, some hundred m/s^3 here, so below 1e-9 at dt = 3e-6;
+  round-off of positions adds eps/dt = 1e-10 to velocities. Accelerations: fourth derivatives some thousand, and the same
+  round-off.
 */
 static PetscErrorCode CheckMotion(CoupleSurface s, const CoupleSurfaceOps *ops)
 {
@@ -299,7 +301,8 @@ static PetscErrorCode TestTransfer(PetscInt dim, PetscBool line)
     lost = fmax(lost, fabs(audit.power_lost));
   }
   PetscCall(CheckWork(s, &ops, &c, f));
-  printf("%s in %dD: largest loss of force, moment, power %.1e of %.3g\n", line ? "line with offsets" : "solid", (int)dim, lost, size);
+  printf("%s in %dD: largest loss of force, moment, power %.1e of %.3g\n", line ? "line with offsets" : "solid", (int)dim, lost,
+         size);
   PetscCall(CoupleSurfaceDestroy(&s));
   for (int k = 0; k < 3; k++) PetscCall(PetscFree(c.q[k]));
   PetscCall(PetscFree(r));
@@ -321,8 +324,12 @@ static PetscErrorCode Remember(MPI_Comm comm, int line, const char *func, const 
 static PetscErrorCode TestRefused(void)
 {
   const CoupleHostOps ops = {.getstate = GetState_Cloud, .advance = Advance_Cloud};
-  const char *const wanted[] = {"node 9 must be in [0, 6)",  "add up to 2; must be 1", "volume = -1. must be > 0",
-                                "needs slopes",              "and ascend",             "the tangent has the length 0",
+  const char *const wanted[] = {"node 9 must be in [0, 6)",
+                                "add up to 2; must be 1",
+                                "volume = -1. must be > 0",
+                                "needs slopes",
+                                "and ascend",
+                                "the tangent has the length 0",
                                 "getstate and advance must be given"};
   Arrays *r;
   Cloud c = {0};

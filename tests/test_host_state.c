@@ -1,9 +1,9 @@
 /*
   test_host_state.c - stepping for programs that own the time loop.
 
-  Rolling back: the steps after a save and the same steps after going back there end in the same bits, everywhere in a run, with the
-  search structure of the fluid rebuilt in between or not, for every integrator of the fluid; two states may be kept at once. Two
-  couplings in one program, stepped in turn, end in the bits that each ends in alone.
+  Rolling back: the steps after a save and the same steps after going back there end in the same bits, everywhere in a run, with
+  the search structure of the fluid rebuilt in between or not, for every integrator of the fluid; two states may be kept at once.
+  Two couplings in one program, stepped in turn, end in the bits that each ends in alone.
 */
 #include "host_scene.h"
 
@@ -54,15 +54,16 @@ static PetscErrorCode TestBack(const char *integrator)
          (int)DifferentBits(n, first, again), (int)n);
     TEST(t1 == t2 && step1 == step2 && t1 > t0, "time %g step %d, again %g %d", (double)t1, (int)step1, (double)t2, (int)step2);
     TEST(!memcmp(&b1, &b2, sizeof(b1)) && !memcmp(&a1, &a2, sizeof(a1)), "balance and audit differ when stepped again");
-    TEST(DifferentBits(n, before, again) > n / 2, "only %d of %d numbers changed in 15 steps", (int)DifferentBits(n, before, again),
-         (int)n);
+    TEST(DifferentBits(n, before, again) > n / 2, "only %d of %d numbers changed in 15 steps",
+         (int)DifferentBits(n, before, again), (int)n);
     total += DifferentBits(n, first, again);
     PetscCall(PetscFree(before));
     PetscCall(PetscFree(first));
     PetscCall(PetscFree(again));
     PetscCall(PetscFree(back));
   }
-  printf("%-10s 3 rounds of 15 steps, back and again: %" PetscInt_FMT " of %" PetscInt_FMT " numbers differ\n", integrator, total, n);
+  printf("%-10s 3 rounds of 15 steps, back and again: %" PetscInt_FMT " of %" PetscInt_FMT " numbers differ\n", integrator, total,
+         n);
   PetscCall(CoupleStateDestroy(&state));
   PetscCall(CoupleStateDestroy(&later));
   PetscCall(SceneDestroy(&s));
@@ -87,8 +88,8 @@ static PetscErrorCode TestOneState(void)
     PetscCall(CoupleRestoreState(s.couple, state));
     PetscCall(Steps(&s, 40, 10.0));
     PetscCall(SceneNumbers(&s, &n, &again));
-    TEST(DifferentBits(n, first, again) == 0, "%d of %d numbers differ after 40 steps, time %d", (int)DifferentBits(n, first, again),
-         (int)n, k);
+    TEST(DifferentBits(n, first, again) == 0, "%d of %d numbers differ after 40 steps, time %d",
+         (int)DifferentBits(n, first, again), (int)n, k);
     PetscCall(PetscFree(again));
   }
   PetscCall(PetscFree(first));

@@ -3,17 +3,9 @@
   the exact loss of speed, Hertz collisions against closed forms, Eq. 32 against a lattice sum, conservation, crowds, refusals.
 */
 #include "rigid.h"
-#include "testing.h"
-#include <string.h>
+#include "rigidtest.h"
 
 static const char help[] = "Short-range forces of rigid bodies.\n";
-
-static PetscReal Random(void)
-{
-  static unsigned seed = 4242u;
-  seed = seed * 1664525u + 1013904223u;
-  return (PetscReal)(seed >> 8) / 16777216.;
-}
 
 /* Brenner, Chem. Eng. Sci. 16 (1961): force/(6 pi mu a U) of a sphere at distance a + s from a solid wall (solid) or a plane of
    symmetry (two equal spheres, gap 2 s, approaching at U each). */
@@ -373,7 +365,8 @@ static PetscErrorCode TestCrowd(void)
   RigidBodySpec s;
   ShortRange p;
   const PetscReal a = .03, period[3] = {1., 1., 1.};
-  PetscReal ke0, ke, p0[3], p1[3], L[3], least = 1e30, *X, moved = 0., V[3], V0[3];
+  PetscReal ke0, ke, p0[3], p1[3], L[3], least = 1e30, *X, *V0, V[3];
+  int hit = 0;
 
   PetscFunctionBegin;
   PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
@@ -381,6 +374,7 @@ static PetscErrorCode TestCrowd(void)
   p.roughness = 2e-3, p.modulus = 3e6;
   PetscCall(RigidSetShortRange(r, &p));
   PetscCall(RigidSetPeriod(r, period));
+  PetscCall(PetscMalloc2((size_t)(3 * n), &X, (size_t)(3 * n), &V0));
   for (int i = 0; i < n; i++) {
     const int id[3] = {i % side, i / side % side, i / side / side};
     PetscCall(RigidBodySpecInit(&s));
@@ -388,7 +382,7 @@ static PetscErrorCode TestCrowd(void)
     for (int k = 0; k < 3; k++) {
       s.position[k] = (id[k] + .5) / side;
       s.velocity[k] = Random() - .5;
-      if (i == 0) V0[k] = s.velocity[k];
+      V0[3 * i + k] = s.velocity[k];
     }
     PetscCall(RigidAddBody(r, &s, NULL));
   }
@@ -396,7 +390,6 @@ static PetscErrorCode TestCrowd(void)
   PetscCall(RigidCheckOverlap(r, .01));
   PetscCall(RigidGetEnergy(r, &ke0, NULL));
   PetscCall(RigidGetMomentum(r, p0, L));
-  PetscCall(PetscMalloc1((size_t)(3 * n), &X));
   for (int m = 1; m <= 1500; m++) {
     PetscCall(RigidAdvance(r, m * 2e-4));
     if (m % 50) continue;
@@ -408,37 +401,20 @@ static PetscErrorCode TestCrowd(void)
         least = PetscMin(least, sqrt(d2) - 2. * a);
       }
   }
-  PetscCall(PetscFree(X));
   PetscCall(RigidGetEnergy(r, &ke, NULL));
   PetscCall(RigidGetMomentum(r, p1, L));
-  PetscCall(RigidGetState(r, 0, NULL, NULL, V, NULL));
-  for (int k = 0; k < 3; k++) moved += fabs(V[k] - V0[k]);
-  printf("crowd: least gap %.2e m, energy %.5f of the initial one, first sphere's velocity changed by %.2f m/s\n", least,
-         ke / ke0, moved);
+  for (int i = 0; i < n; i++) {
+    PetscCall(RigidGetState(r, i, NULL, NULL, V, NULL));
+    hit += fabs(V[0] - V0[3 * i]) + fabs(V[1] - V0[3 * i + 1]) + fabs(V[2] - V0[3 * i + 2]) > .01;
+  }
+  PetscCall(PetscFree2(X, V0));
+  printf("crowd: least gap %.2e m, energy %.5f of the initial one, %d of %d spheres have collided\n", least, ke / ke0, hit, n);
   TEST(least > 0., "spheres overlap by %g m", -least);
-  TEST(least < p.roughness && moved > .01, "no collisions");
+  TEST(hit > n / 2, "only %d spheres have collided", hit);
   TEST(fabs(ke / ke0 - 1.) < .02, "energy %g of the initial one", ke / ke0); /* pairs in contact at the end hold some */
   for (int k = 0; k < 3; k++) TEST_NEAR(p1[k], p0[k], 1e-11, "momentum of the crowd");
   PetscCall(RigidDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static char message[1024];
-
-static PetscErrorCode Catch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
-                            const char *mess, void *ctx)
-{
-  (void)comm, (void)line, (void)fun, (void)file, (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", mess);
-  return n;
-}
-
-static void Refused(PetscErrorCode ierr, const char what[], const char a[], const char b[])
-{
-  TEST(ierr != 0, "%s was accepted", what);
-  TEST(strstr(message, a) && strstr(message, b) && !strchr(message, '\n'), "%s: message \"%s\" lacks \"%s\" or \"%s\"", what,
-       message, a, b);
-  message[0] = 0;
 }
 
 static PetscErrorCode Overlapping(RigidShape a, RigidShape b, PetscReal x, RigidMotion motion, Rigid *r)

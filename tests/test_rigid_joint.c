@@ -3,8 +3,7 @@
   spring and damper against the closed form of the integration rule, conservation, reactions, drift, yield, refusals.
 */
 #include "rigid.h"
-#include "testing.h"
-#include <string.h>
+#include "rigidtest.h"
 
 static const char help[] = "Joints of rigid bodies.\n";
 
@@ -629,24 +628,6 @@ static PetscErrorCode TestTurns(void)
   TEST(p < 1e-12 && v < 1e-10, "constraints violated by %g, %g", p, v);
   PetscCall(RigidDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static char message[1024];
-
-static PetscErrorCode Catch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
-                            const char *mess, void *ctx)
-{
-  (void)comm, (void)line, (void)fun, (void)file, (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", mess);
-  return n;
-}
-
-static void Refused(PetscErrorCode ierr, const char what[], const char a[], const char b[])
-{
-  TEST(ierr != 0, "%s was accepted", what);
-  TEST(strstr(message, a) && strstr(message, b) && !strchr(message, '\n'), "%s: message \"%s\" lacks \"%s\" or \"%s\"", what,
-       message, a, b);
-  message[0] = 0;
 }
 
 #define REFUSE(change, a_, b_)                                                                                                   \

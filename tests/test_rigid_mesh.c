@@ -4,20 +4,12 @@
 */
 #define _GNU_SOURCE /* mkdtemp */
 #include "rigid.h"
-#include "testing.h"
+#include "rigidtest.h"
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static const char help[] = "Meshes and composites of rigid bodies.\n";
-
-static PetscReal Random(void)
-{
-  static unsigned seed = 777u;
-  seed = seed * 1664525u + 1013904223u;
-  return (PetscReal)(seed >> 8) / 16777216.;
-}
 
 static const PetscInt boxfacets[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                        2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
@@ -431,24 +423,6 @@ static PetscErrorCode TestComposite2D(void)
   PetscCall(RigidDestroy(&r));
   PetscCall(RigidGeometryDestroy(&g));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static char message[1024];
-
-static PetscErrorCode Catch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
-                            const char *mess, void *ctx)
-{
-  (void)comm, (void)line, (void)fun, (void)file, (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", mess);
-  return n;
-}
-
-static void Refused(PetscErrorCode ierr, const char what[], const char a[], const char b[])
-{
-  TEST(ierr != 0, "%s was accepted", what);
-  TEST(strstr(message, a) && strstr(message, b) && !strchr(message, '\n'), "%s: message \"%s\" lacks \"%s\" or \"%s\"", what,
-       message, a, b);
-  message[0] = 0;
 }
 
 static PetscErrorCode Bytes(const char name[], const char *text, size_t n)

@@ -3,8 +3,7 @@
   (volume, spacing, depth, cover, moments), and the messages for bad input.
 */
 #include "rigid.h"
-#include "testing.h"
-#include <string.h>
+#include "rigidtest.h"
 
 static const char help[] = "Shapes, markers and input checks of rigid bodies.\n";
 
@@ -29,14 +28,6 @@ static PetscErrorCode CaseSpec(const Case *c, RigidBodySpec *s)
   s->shape = c->shape;
   for (int k = 0; k < 3; k++) s->size[k] = c->size[k];
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A small generator of our own: the same points everywhere (Numerical Recipes' LCG). */
-static PetscReal Random(void)
-{
-  static unsigned seed = 12345u;
-  seed = seed * 1664525u + 1013904223u;
-  return (PetscReal)(seed >> 8) / 16777216.;
 }
 
 /*
@@ -260,25 +251,6 @@ static PetscErrorCode TestBoxLattice(void)
   PetscCall(PetscFree(v));
   PetscCall(PetscFree(depth));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static char message[1024];
-
-static PetscErrorCode Catch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
-                            const char *mess, void *ctx)
-{
-  (void)comm, (void)line, (void)fun, (void)file, (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", mess);
-  return n;
-}
-
-/* The call must fail with one line that holds both words. */
-static void Refused(PetscErrorCode ierr, const char what[], const char a[], const char b[])
-{
-  TEST(ierr != 0, "%s was accepted", what);
-  TEST(strstr(message, a) && strstr(message, b) && !strchr(message, '\n'), "%s: message \"%s\" lacks \"%s\" or \"%s\"", what,
-       message, a, b);
-  message[0] = 0;
 }
 
 static PetscErrorCode Try(PetscInt dim, const RigidBodySpec *s)

@@ -28,9 +28,10 @@ static PetscErrorCode SetUp(Couple c)
   PetscCall(PetscNew(&it));
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSurface s = c->slot[i].surface;
-    PetscInt n;
-    PetscCheck(s->ops.statesize, c->comm, PETSC_ERR_SUP, "couple_iterations > 1: surface %s cannot save its state", s->name);
-    PetscCall((*s->ops.statesize)(s, &n));
+    PetscInt n = 0;
+    PetscCheck(s->held || s->ops.statesize, c->comm, PETSC_ERR_SUP, "couple_iterations > 1: surface %s cannot save its state",
+               s->name);
+    if (s->ops.statesize) PetscCall((*s->ops.statesize)(s, &n));
     it->nstate += n;
     if (!s->held) it->nforce += 3 * c->slot[i].n;
   }
@@ -56,6 +57,7 @@ static PetscErrorCode States(Couple c, PetscBool load)
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSurface s = c->slot[i].surface;
     PetscInt n;
+    if (!s->ops.statesize) continue; /* held: it follows the time and answers to no force */
     PetscCall((*s->ops.statesize)(s, &n));
     if (load)
       PetscCall((*s->ops.load)(s, p));

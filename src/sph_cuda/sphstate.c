@@ -2,8 +2,8 @@
   sphstate.c - the whole state of the fluid in one buffer, and back: rollback of a step, restart.
 
   Everything that the next step depends on, in the order of the arrays: sums over neighbours then run in the same order and
-  give the same bits. A backend without an operation of its own for its search structure makes that anew after a save as well as after
-  a restore, from the same arrays.
+  give the same bits. A backend without an operation of its own for its search structure makes that anew after a save as well as
+  after a restore, from the same arrays.
 */
 #include "sphimpl.h"
 
