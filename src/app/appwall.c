@@ -100,7 +100,7 @@ PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, 
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&w));
-  PetscCall(PetscMalloc3(3 * n, &w->x, n, &w->volume, n, &w->depth));
+  PetscCall(PetscMalloc3(3 * (size_t)n, &w->x, n, &w->volume, n, &w->depth));
   PetscCall(PetscArraycpy(w->x, x, 3 * n));
   PetscCall(PetscArraycpy(w->volume, volume, n));
   PetscCall(PetscArraycpy(w->depth, depth, n));
