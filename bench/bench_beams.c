@@ -27,7 +27,7 @@ static const Solver solvers[] = {
     {"aij", "-ancf_mat_type seqaij -ancf_pc_type lu -ancf_pc_factor_mat_ordering_type natural"},
     {"klu", "-ancf_mat_type seqaij -ancf_pc_type lu -ancf_pc_factor_mat_solver_type klu"},
     {"umfpack", "-ancf_mat_type seqaij -ancf_pc_type lu -ancf_pc_factor_mat_solver_type umfpack"},
-    {"cholmod", "-ancf_mat_type seqsbaij -ancf_pc_type cholesky -ancf_pc_factor_mat_solver_type cholmod"},
+    {"cholmod", "-ancf_mat_type seqaij -ancf_pc_type cholesky -ancf_pc_factor_mat_solver_type cholmod"},
 };
 
 /* Of all threads; a busy machine stretches the wall clock but hardly this. */

@@ -5,11 +5,12 @@ install(TARGETS frond EXPORT FrondTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS frond_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES src/frondsys.h src/sph_cuda/sph.h src/sph_cuda/sphfill.h src/ancf_petsc/ancf.h src/rigid/rigid.h src/rigid/shortrange.h
-  src/couple/couple.h src/couple/couplehost.h
+  src/couple/couple.h src/couple/couplehost.h src/plugin/frondscene.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/frond)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/frond/examples
-  FILES_MATCHING PATTERN "*.yaml" PATTERN "plot_run.py" PATTERN "out_*" EXCLUDE)
+  FILES_MATCHING PATTERN "*.yaml" PATTERN "plot_run.py" PATTERN "python_tutorial.py" PATTERN "host_*" PATTERN "out_*" EXCLUDE)
+install(FILES python/frond.py DESTINATION ${CMAKE_INSTALL_DATADIR}/frond/python)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Frond)
 install(EXPORT FrondTargets NAMESPACE Frond:: DESTINATION ${package_dir})

@@ -95,6 +95,7 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(TSGetAdapt(ancf->ts, &adapt));
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
   if (!fixedstep && ancf->step > 0) dt = PetscMin(ancf->step, t - t0);
+  ancf->nominal = fixedstep ? dt : 0;
   PetscCall(AncfSetNewtonFloor(ancf, dt));
   if (ancf->restart && ancf->form == ANCF_FORM_SECOND) {
     if (!ancf->given) {

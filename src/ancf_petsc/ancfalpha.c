@@ -73,39 +73,24 @@ PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt)
 }
 
 /* Before a step: remember v. */
-static PetscErrorCode AncfAlphaPreStep(TS ts)
+PetscErrorCode AncfAlphaPreStep(Ancf ancf)
 {
-  Ancf ancf;
-
   PetscFunctionBegin;
-  PetscCall(TSGetApplicationContext(ts, &ancf));
   PetscCall(PetscArraycpy(ancf->vprev, ancf->v, 6 * ancf->nnodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* After it: v_1 = v_0 + dt ((1 - gamma) A_0 + gamma A_1) gives A_1. */
-static PetscErrorCode AncfAlphaPostStep(TS ts)
+PetscErrorCode AncfAlphaPostStep(Ancf ancf)
 {
   PetscReal am, af, gamma, beta, t, t0, c, d;
-  Ancf ancf;
 
   PetscFunctionBegin;
-  PetscCall(TSGetApplicationContext(ts, &ancf));
-  PetscCall(TSAlpha2GetParams(ts, &am, &af, &gamma, &beta));
-  PetscCall(TSGetTime(ts, &t));
-  PetscCall(TSGetPrevTime(ts, &t0));
+  PetscCall(TSAlpha2GetParams(ancf->ts, &am, &af, &gamma, &beta));
+  PetscCall(TSGetTime(ancf->ts, &t));
+  PetscCall(TSGetPrevTime(ancf->ts, &t0));
   c = 1 / (gamma * (t - t0));
   d = (1 - gamma) / gamma;
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) ancf->history[i] = c * (ancf->v[i] - ancf->vprev[i]) - d * ancf->history[i];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode AncfAlphaSetUp(Ancf ancf)
-{
-  PetscFunctionBegin;
-  if (!ancf->history) PetscCall(PetscCalloc2(6 * ancf->nnodes, &ancf->history, 6 * ancf->nnodes, &ancf->vprev));
-  PetscCall(TSSetApplicationContext(ancf->ts, ancf));
-  PetscCall(TSSetPreStep(ancf->ts, AncfAlphaPreStep));
-  PetscCall(TSSetPostStep(ancf->ts, AncfAlphaPostStep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

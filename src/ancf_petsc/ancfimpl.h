@@ -80,6 +80,7 @@ struct _p_Ancf {
   PetscReal *backup;                      /* e, v, history at the start of AncfAdvance(), 3 x nodes x 6 */
   PetscReal *saved, savedtime, savedstep; /* the same for AncfSaveState(), NULL before */
   PetscReal *history, *vprev;             /* acceleration carried by TSALPHA2, velocity before the step */
+  PetscReal nominal;                      /* step of a TS that does not adapt, s; 0: it adapts */
   PetscBool given;                        /* history was set by the user */
   PetscBool restart, priming;             /* TS must start afresh; AncfAlphaStart() is at work */
   PetscInt uncounted[3]; /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
@@ -160,7 +161,8 @@ extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
 
 /* ancfalpha.c */
-extern PetscErrorCode AncfAlphaSetUp(Ancf ancf);
+extern PetscErrorCode AncfAlphaPreStep(Ancf ancf);
+extern PetscErrorCode AncfAlphaPostStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt);
 extern PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f);
 

@@ -340,11 +340,38 @@ static PetscErrorCode AncfPredict(SNES snes, Vec X, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AncfPreStep(TS ts)
+{
+  Ancf ancf;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetApplicationContext(ts, &ancf));
+  if (ancf->form == ANCF_FORM_SECOND) PetscCall(AncfAlphaPreStep(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step that was reduced because Newton failed grows again, which TSADAPTNONE would not do. */
+static PetscErrorCode AncfPostStep(TS ts)
+{
+  PetscReal t, tmax, dt;
+  Ancf ancf;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetApplicationContext(ts, &ancf));
+  if (ancf->form == ANCF_FORM_SECOND) PetscCall(AncfAlphaPostStep(ancf));
+  PetscCall(TSGetTimeStep(ts, &dt));
+  PetscCall(TSGetTime(ts, &t));
+  PetscCall(TSGetMaxTime(ts, &tmax));
+  if (dt < 0.5 * ancf->nominal && t + dt < tmax) PetscCall(TSSetTimeStep(ts, PetscMin(2 * dt, tmax - t)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Defaults of the solver stack, all changeable by -ancf_ts_..., -ancf_snes_..., -ancf_ksp_..., -ancf_pc_.... */
 PetscErrorCode AncfTSCreate(Ancf ancf)
 {
   TSAdapt adapt;
   SNES snes;
+  SNESLineSearch search;
   KSP ksp;
   PC pc;
 
@@ -361,6 +388,9 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESSetTolerances(snes, 1e-50, 1e-9, 1e-12, 25, 10000));
+  /* Full steps: bending first stretches the chord, so that the residual rises before it falls; a step that fails is reduced. */
+  PetscCall(SNESGetLineSearch(snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -459,6 +489,9 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(3 * n, &ancf->backup));
+  PetscCall(TSSetApplicationContext(ancf->ts, ancf));
+  PetscCall(TSSetPreStep(ancf->ts, AncfPreStep));
+  PetscCall(TSSetPostStep(ancf->ts, AncfPostStep));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
   PetscCheck(ancf->damping == 0 || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
@@ -476,7 +509,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
     PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
     PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
-    PetscCall(AncfAlphaSetUp(ancf));
+    if (!ancf->history) PetscCall(PetscCalloc2(n, &ancf->history, n, &ancf->vprev));
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {

@@ -146,7 +146,7 @@ static PetscErrorCode add_walls(App *app)
   PetscCall(SphGetSpacing(app->sph, &dp));
   PetscCall(SphGetSupport(app->sph, &support));
   PetscCall(SphFillWalls(app->dim, dp, s->lo, s->hi, s->wall, s->periodic, support, &n, &x, &volume, &depth));
-  PetscCall(PetscMalloc3(3 * n, &fx, n, &fvolume, n, &fdepth));
+  PetscCall(PetscMalloc3(3 * (size_t)n, &fx, n, &fvolume, n, &fdepth));
   for (PetscInt f = 0; f < 6; f++) {
     m = 0;
     for (PetscInt i = 0; i < n && s->wall[f]; i++) {
@@ -222,7 +222,7 @@ static PetscErrorCode build_couple(App *app)
   CoupleSurface surface;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(6 + s->nbeams + s->nbodies, &app->surfaces));
+  PetscCall(PetscCalloc1((size_t)(6 + s->nbeams + s->nbodies), &app->surfaces));
   if (!s->fluid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CoupleCreate(PETSC_COMM_SELF, &app->couple));
   PetscCall(CoupleSetSph(app->couple, app->sph));
@@ -307,7 +307,7 @@ PetscErrorCode AppInjectFault(App *app)
   if (s->faultstep < 0 || app->step != s->faultstep) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(s->faultmarker < n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "fault_nan: marker %" PetscInt_FMT " must be below %" PetscInt_FMT "", s->faultmarker, n);
-  PetscCall(PetscMalloc1(3 * n, &value));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &value));
   PetscCall(PetscMemzero(&f, sizeof(f)));
   if (s->faultfield == 0)
     f.x = value;

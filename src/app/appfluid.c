@@ -288,7 +288,7 @@ PetscErrorCode AppFluidFill(App *app)
              "the domain has no fluid: no marker of spacing sph_dp = %g m fits into the fluid box outside the structures",
              (double)dp);
   PetscCall(check_lattice(app, dp));
-  PetscCall(PetscMalloc2(3 * n, &v, n, &p));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &p));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(PetscArraycpy(v + 3 * i, s->fluidvelocity, 3));
     p[i] = s->pressure == PRESSURE_HYDROSTATIC ? rho * head(s, app->dim, x + 3 * i) : 0;

@@ -61,6 +61,28 @@ static PetscErrorCode Advance_Sliding(CoupleSurface s, PetscReal t)
   return PETSC_SUCCESS;
 }
 
+/* It has no state: its markers never move. */
+static PetscErrorCode StateSize_Sliding(CoupleSurface s, PetscInt *n)
+{
+  (void)s;
+  *n = 0;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Save_Sliding(CoupleSurface s, PetscReal *state)
+{
+  (void)s;
+  (void)state;
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Load_Sliding(CoupleSurface s, const PetscReal *state)
+{
+  (void)s;
+  (void)state;
+  return PETSC_SUCCESS;
+}
+
 static PetscErrorCode View_Sliding(CoupleSurface s, PetscViewer viewer)
 {
   Sliding *w;
@@ -95,12 +117,15 @@ PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, 
                                 .applyforces = ApplyForces_Sliding,
                                 .advance = Advance_Sliding,
                                 .view = View_Sliding,
-                                .destroy = Destroy_Sliding};
+                                .destroy = Destroy_Sliding,
+                                .statesize = StateSize_Sliding,
+                                .save = Save_Sliding,
+                                .load = Load_Sliding};
   Sliding *w;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&w));
-  PetscCall(PetscMalloc3(3 * n, &w->x, n, &w->volume, n, &w->depth));
+  PetscCall(PetscMalloc3(3 * (size_t)n, &w->x, n, &w->volume, n, &w->depth));
   PetscCall(PetscArraycpy(w->x, x, 3 * n));
   PetscCall(PetscArraycpy(w->volume, volume, n));
   PetscCall(PetscArraycpy(w->depth, depth, n));

@@ -144,7 +144,7 @@ PetscErrorCode AppOutputCreate(const App *app, AppOutput *output)
     longest = PetscMax(longest, out->series.points[b]);
   }
   longest = PetscMax(longest, app->scene.nbodies);
-  PetscCall(PetscMalloc4(3 * longest, &out->vector, longest, &out->scalar, longest, &out->group, longest, &out->index));
+  PetscCall(PetscMalloc4(3 * (size_t)longest, &out->vector, longest, &out->scalar, longest, &out->group, longest, &out->index));
   for (PetscInt i = 0; i < longest; i++) out->index[i] = i;
   PetscCall(write_settings(app, out->dir));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -227,7 +227,7 @@ static PetscErrorCode write_beam(AppOutput out, App *app, PetscInt beam, int64_t
   PetscFunctionBegin;
   for (PetscInt a = 0; a < 3; a++) L += PetscSqr(spec->end[a] - spec->start[a]);
   L = PetscSqrtReal(L);
-  PetscCall(PetscMalloc2(3 * n, &v, n, &s));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &s));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal rx[3];
     s[i] = L * (PetscReal)i / (PetscReal)(n - 1);
@@ -259,7 +259,7 @@ static PetscErrorCode write_bodies(AppOutput out, App *app, int64_t file)
   int64_t g;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(3 * n, &X, 4 * n, &q, 3 * n, &V, 3 * n, &W));
+  PetscCall(PetscMalloc4(3 * (size_t)n, &X, 4 * (size_t)n, &q, 3 * (size_t)n, &V, 3 * (size_t)n, &W));
   for (PetscInt i = 0; i < n; i++) PetscCall(RigidGetState(app->rigid, i, X + 3 * i, q + 4 * i, V + 3 * i, W + 3 * i));
   PetscCall(AppH5Group(file, "bodies", &g));
   PetscCall(AppH5Int(g, &(H5Label){"index", "1", "body number in the order of the option bodies"}, n, 0, out->index));

@@ -39,6 +39,7 @@ static PetscErrorCode Destroy_CPU(Sph sph)
   PetscCall(PetscFree(cpu->cellstart));
   PetscCall(PetscFree(cpu->q));
   PetscCall(PetscFree(cpu->lists));
+  PetscCall(PetscFree(cpu->boxes));
   PetscCall(PetscFree(sph->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -76,25 +77,33 @@ static void TakeOutLeft(Sph sph)
   sph->left += left;
 }
 
-/* Room for each thread's list. */
+/* Room for each thread's list and batches, and for the boxes of all batches. */
 static PetscErrorCode SizeLists(Sph sph, SphCpu *cpu)
 {
   const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
-  const PetscInt ncell = (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2];
+  const PetscInt ncell = (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2], around = sph->par.dim == 3 ? 27 : 9;
+  const PetscInt nbox = sph->n / 16 + 2 * ncell + 17;
   PetscInt most = 0;
 
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static) reduction(max : most)
   for (PetscInt c = 0; c < ncell; c++) most = PetscMax(most, cpu->cellstart[2 * c + 2] - cpu->cellstart[2 * c]);
-  most = (most * (sph->par.dim == 3 ? 27 : 9) + 47) / 16 * 16;
-  if (most > cpu->listcap) {
-    cpu->listcap = most + most / 64 * 16;
-    cpu->listbytes = ((size_t)cpu->listcap * (SPH_NQ_MAX * real + sizeof(int)) + 127) / 64 * 64;
+  if (around * most + 32 > cpu->listcap) {
+    most += most / 4;
+    cpu->listcap = (around * most + 47) / 16 * 16;
+    cpu->batchcap = (around * (most / 16 + 2) + 31) / 16 * 16;
+    cpu->listbytes = (size_t)cpu->listcap * SPH_NQ_MAX * real + (size_t)cpu->batchcap * (9 * real + 3 * sizeof(int)) + 128;
+    cpu->listbytes = cpu->listbytes / 64 * 64;
     PetscCall(PetscFree(cpu->lists));
     PetscCall(PetscMalloc(cpu->listbytes * (size_t)cpu->threads + 64, &cpu->lists));
   }
+  if (nbox > cpu->boxcap) {
+    cpu->boxcap = nbox + nbox / 16;
+    PetscCall(PetscFree(cpu->boxes));
+    PetscCall(PetscMalloc(6 * (size_t)cpu->boxcap * real, &cpu->boxes));
+  }
   sph->backendbytes = (PetscReal)((size_t)cpu->stride * (size_t)cpu->nq * real + cpu->listbytes * (size_t)cpu->threads +
-                                  (size_t)cpu->cellcap * sizeof(int));
+                                  (size_t)cpu->cellcap * sizeof(int) + 6 * (size_t)cpu->boxcap * real);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

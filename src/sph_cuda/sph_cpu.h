@@ -26,17 +26,26 @@ typedef struct {
   SphGrid grid;
   int *cellstart; /* 2 ncell + 2 offsets: fluid and boundary markers of each cell */
   PetscInt cellcap;
-  double moved;     /* bound on the displacement of any fluid marker since the last build, m */
-  double *gmoved;   /* the same for each boundary group */
-  double skin;      /* relative enlargement of the cells */
-  PetscInt listcap; /* most neighbours that a group can have */
+  double moved;      /* bound on the displacement of any fluid marker since the last build, m */
+  double *gmoved;    /* the same for each boundary group */
+  double skin;       /* relative enlargement of the cells */
+  PetscInt listcap;  /* most neighbours that a group can have */
+  PetscInt batchcap; /* most batches around a cell */
   PetscInt threads;
   void *q; /* nq x stride values in the working precision */
   PetscInt nq, stride;
-  void *lists; /* per thread: SPH_NQ_MAX x listcap values, listcap indices, from the first multiple of 64 bytes on */
+  void *lists; /* per thread, from the first multiple of 64 bytes on: a list and the batches around a cell, see CutMemory() */
   size_t listbytes;
+  void *boxes; /* 6 x boxcap: bounding boxes of batches of markers in the working precision */
+  PetscInt boxcap;
   PetscBool built;
 } SphCpu;
+
+/* Number of the batch that begins range r = 2 cell + kind at marker i0: increasing, with room for all batches of the range. */
+static inline int SphCpuBatch(int r, int i0)
+{
+  return i0 / 16 + r;
+}
 
 /* Which sums a sweep over the markers makes. */
 typedef enum {

@@ -25,7 +25,6 @@ typedef double sphreal;
 
 typedef struct {
   sphreal *q[SPH_NQ_MAX];
-  int *scratch;
   int n; /* a multiple of 16 */
 } List;
 
@@ -35,6 +34,7 @@ typedef struct {
   Sph sph;
   const SphCpu *cpu;
   sphreal *q[SPH_NQ_MAX];
+  sphreal *box[6]; /* of batches: lo, hi; numbered by SphCpuBatch() */
 } Sweep;
 
 typedef void (*Kernel)(const Sweep *w, const List *l, int i);
@@ -73,8 +73,25 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
     for (int i = i0; i < i1; i++) q[SPH_Q_DIF(uv)][i] = boundary ? (sphreal)0 : q[SPH_Q_VOL][i];
 }
 
-static void Pointers(const SphCpu *cpu, sphreal *q[SPH_NQ_MAX])
+/* Bounding boxes of the batches of markers [i0,i1), which form range r, in the frame of their cell. */
+static void BoundBatches(sphreal *const *q, sphreal *const *box, int r, int i0, int i1)
 {
+  int b = SphCpuBatch(r, i0);
+  for (int a = i0; a < i1; a += SPH_BATCH, b++)
+    for (int k = 0; k < 3; k++) {
+      sphreal lo = q[k][a], hi = lo;
+      for (int i = a + 1; i < i1 && i < a + SPH_BATCH; i++) {
+        lo = q[k][i] < lo ? q[k][i] : lo;
+        hi = q[k][i] > hi ? q[k][i] : hi;
+      }
+      box[k][b] = lo;
+      box[3 + k][b] = hi;
+    }
+}
+
+static void Pointers(const SphCpu *cpu, sphreal *q[SPH_NQ_MAX], sphreal *box[6])
+{
+  for (int k = 0; k < 6; k++) box[k] = (sphreal *)cpu->boxes + (size_t)k * (size_t)cpu->boxcap;
   for (int k = 0; k < SPH_NQ_MAX; k++) q[k] = (sphreal *)cpu->q + (size_t)PetscMin(k, cpu->nq - 1) * (size_t)cpu->stride;
 }
 
@@ -83,14 +100,15 @@ void SPH_NAME(SphCpuPrepare)(Sph sph, int afteraux)
   const SphCpu *cpu = (const SphCpu *)sph->data;
   const SphGrid *g = &cpu->grid;
   const int ncell = g->n[0] * g->n[1] * g->n[2];
-  sphreal *q[SPH_NQ_MAX];
+  sphreal *q[SPH_NQ_MAX], *box[6];
 
-  Pointers(cpu, q);
+  Pointers(cpu, q, box);
 #pragma omp parallel for schedule(static) num_threads((int)cpu->threads)
   for (int c = 0; c < ncell; c++) {
     const int *s = cpu->cellstart + 2 * c, cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
     if (s[0] < s[1]) PrepareRange(sph, cpu, q, cc, s[0], s[1], 0, afteraux);
     if (s[1] < s[2]) PrepareRange(sph, cpu, q, cc, s[1], s[2], 1, afteraux);
+    for (int kind = 0; kind < 2 && !afteraux; kind++) BoundBatches(q, box, 2 * c + kind, s[kind], s[kind + 1]);
   }
 }
 
@@ -247,57 +265,94 @@ SPH_INLINE void Sum(const int kernel, const Sweep *w, const List *l, int i)
     w->sph->rate.ds[i] = (double)sm + (double)sv - 1.0;
 }
 
-/* Copy what lies within 2h of markers [i0,i1) of the cell into the list; fluidonly leaves boundary markers out. */
-SPH_INLINE void Gather(const int nq, const Sweep *w, const int cc[3], int i0, int i1, int fluidonly, List *l)
+/* The batches of the 27 cells around cell cc, fluid ones first, in its frame. */
+static void CollectBatches(const Sweep *w, const int cc[3], SphBatches *b)
 {
   const SphGrid *g = &w->cpu->grid;
+
+  b->n = 0;
+  for (int kind = 0; kind < 2; kind++) {
+    for (int o = 0; o < 27; o++) {
+      const int ox = o % 3 - 1, oy = o / 3 % 3 - 1, oz = o / 9 - 1;
+      const int nx = sph_cell_neighbour(g, 0, cc[0], ox), ny = sph_cell_neighbour(g, 1, cc[1], oy),
+                nz = sph_cell_neighbour(g, 2, cc[2], oz);
+      if (nx < 0 || ny < 0 || nz < 0) continue;
+      const int r = 2 * sph_cell_index(g, nx, ny, nz) + kind, j0 = w->cpu->cellstart[r], j1 = w->cpu->cellstart[r + 1],
+                s0 = SphCpuBatch(r, j0);
+      const sphreal off[3] = {(sphreal)(ox * g->edge[0]), (sphreal)(oy * g->edge[1]), (sphreal)(oz * g->edge[2])};
+      for (int a = j0, s = s0; a < j1; a += SPH_BATCH, s++, b->n++) {
+        for (int k = 0; k < 3; k++) {
+          b->lo[k][b->n] = w->box[k][s] + off[k];
+          b->hi[k][b->n] = w->box[3 + k][s] + off[k];
+          b->off[k][b->n] = off[k];
+        }
+        b->first[b->n] = a;
+        b->count[b->n] = PetscMin(SPH_BATCH, j1 - a);
+      }
+    }
+    if (kind == 0) b->nfluid = b->n;
+  }
+}
+
+/* Copy what lies within 2h of markers [i0,i1) of the cell into the list; fluidonly leaves boundary markers out. */
+SPH_INLINE void Gather(const int nq, const Sweep *w, const SphBatches *b, int i0, int i1, int fluidonly, List *l)
+{
   SphBox box;
-  int m = 0;
+  int m = 0, near;
 
   for (int k = 0; k < 3; k++) {
-    sphreal lo = w->q[k][i0], hi = lo;
+    box.lo[k] = box.hi[k] = w->q[k][i0];
     for (int i = i0 + 1; i < i1; i++) {
-      lo = w->q[k][i] < lo ? w->q[k][i] : lo;
-      hi = w->q[k][i] > hi ? w->q[k][i] : hi;
+      box.lo[k] = w->q[k][i] < box.lo[k] ? w->q[k][i] : box.lo[k];
+      box.hi[k] = w->q[k][i] > box.hi[k] ? w->q[k][i] : box.hi[k];
     }
-    box.c[k] = (sphreal)0.5 * (lo + hi);
-    box.e[k] = (sphreal)0.5 * (hi - lo);
   }
-  for (int o = 0; o < 27; o++) {
-    const int ox = o % 3 - 1, oy = o / 3 % 3 - 1, oz = o / 9 - 1;
-    const int nx = sph_cell_neighbour(g, 0, cc[0], ox), ny = sph_cell_neighbour(g, 1, cc[1], oy),
-              nz = sph_cell_neighbour(g, 2, cc[2], oz);
-    if (nx < 0 || ny < 0 || nz < 0) continue;
-    const int d = 2 * sph_cell_index(g, nx, ny, nz), j0 = w->cpu->cellstart[d], j1 = w->cpu->cellstart[fluidonly ? d + 1 : d + 2];
-    const sphreal off[3] = {(sphreal)(ox * g->edge[0]), (sphreal)(oy * g->edge[1]), (sphreal)(oz * g->edge[2])};
-    const sphreal *src[SPH_NQ_MAX];
-    if (j0 == j1) continue;
-    for (int q = 0; q < nq; q++) src[q] = w->q[q] + j0;
-    m = SphSelect(nq, src, off, j1 - j0, &box, w->c.r2max, l->q, m, l->scratch);
+  near = SphNear(b, fluidonly ? b->nfluid : b->n, &box, w->c.r2max);
+  for (int a = 0; a < near; a++) {
+    const int k = b->near[a];
+    const sphreal off[3] = {b->off[0][k], b->off[1][k], b->off[2][k]};
+    m = SphSelect(nq, w->q, b->first[k], b->count[k], off, &box, w->c.r2max, l->q, m);
   }
   l->n = SphPad(nq, (sphreal)100 / w->c.hinv, l->q, m);
 }
 
-static void GatherAny(const int nq, const Sweep *w, const int cc[3], int i0, int i1, int fluidonly, List *l)
+static void GatherAny(const int nq, const Sweep *w, const SphBatches *b, int i0, int i1, int fluidonly, List *l)
 {
   if (nq == SPH_NQ_BASE)
-    Gather(SPH_NQ_BASE, w, cc, i0, i1, fluidonly, l);
+    Gather(SPH_NQ_BASE, w, b, i0, i1, fluidonly, l);
   else if (nq == SPH_NQ_BASE + 1)
-    Gather(SPH_NQ_BASE + 1, w, cc, i0, i1, fluidonly, l);
+    Gather(SPH_NQ_BASE + 1, w, b, i0, i1, fluidonly, l);
   else if (nq == SPH_NQ_BASE + 3)
-    Gather(SPH_NQ_BASE + 3, w, cc, i0, i1, fluidonly, l);
+    Gather(SPH_NQ_BASE + 3, w, b, i0, i1, fluidonly, l);
   else
-    Gather(SPH_NQ_BASE + 4, w, cc, i0, i1, fluidonly, l);
+    Gather(SPH_NQ_BASE + 4, w, b, i0, i1, fluidonly, l);
 }
 
 /* Sums of one sweep for markers [i0,i1) of a cell, in groups. */
-static void SweepRange(const Sweep *w, Kernel kernel, int nq, const int cc[3], int i0, int i1, int fluidonly, List *l)
+static void SweepRange(const Sweep *w, Kernel kernel, int nq, const SphBatches *batches, int i0, int i1, int fluidonly, List *l)
 {
   for (int a = i0; a < i1; a += SPH_GROUP) {
     const int b = PetscMin(a + SPH_GROUP, i1);
-    GatherAny(nq, w, cc, a, b, fluidonly, l);
+    GatherAny(nq, w, batches, a, b, fluidonly, l);
     for (int i = a; i < b; i++) kernel(w, l, i);
   }
+}
+
+/* Cut a thread's memory into its list and its batches. */
+static void CutMemory(const SphCpu *cpu, int thread, List *l, SphBatches *b)
+{
+  const size_t nb = (size_t)cpu->batchcap;
+  sphreal *mem = (sphreal *)(((uintptr_t)cpu->lists + 63) / 64 * 64 + (size_t)thread * cpu->listbytes);
+
+  for (int k = 0; k < SPH_NQ_MAX; k++, mem += cpu->listcap) l->q[k] = mem;
+  for (int k = 0; k < 3; k++, mem += 3 * nb) {
+    b->lo[k] = mem;
+    b->hi[k] = mem + nb;
+    b->off[k] = mem + 2 * nb;
+  }
+  b->first = (int *)mem;
+  b->count = b->first + nb;
+  b->near = b->count + nb;
 }
 
 /* The loops above for each combination of compile-time choices. */
@@ -347,7 +402,7 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
   Kernel fluid = NULL, boundary = NULL;
   Sweep w = {.c = sph_pair_const(p), .sph = sph, .cpu = cpu};
 
-  Pointers(cpu, w.q);
+  Pointers(cpu, w.q, w.box);
   if (sweep == SPH_SWEEP_RATES)
     fluid = boundary = rates[p->kernel][p->viscosity][SphTwoVelocities(p)][p->diffusion != SPH_DIFFUSION_NONE];
   else if (sweep == SPH_SWEEP_SHIFT)
@@ -360,15 +415,17 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
   }
 #pragma omp parallel num_threads((int)cpu->threads)
   {
-    sphreal *mem = (sphreal *)(((uintptr_t)cpu->lists + 63) / 64 * 64 + (size_t)omp_get_thread_num() * cpu->listbytes);
     List l;
-    for (int k = 0; k < SPH_NQ_MAX; k++) l.q[k] = mem + (size_t)k * (size_t)cpu->listcap;
-    l.scratch = (int *)(mem + (size_t)SPH_NQ_MAX * (size_t)cpu->listcap);
+    SphBatches b;
+    CutMemory(cpu, omp_get_thread_num(), &l, &b);
 #pragma omp for schedule(dynamic, 8)
     for (int c = 0; c < ncell; c++) {
       const int *s = cpu->cellstart + 2 * c, cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
-      if (fluid) SweepRange(&w, fluid, nq, cc, s[0], s[1], 0, &l);
-      if (boundary) SweepRange(&w, boundary, nq, cc, s[1], s[2], 1, &l);
+      const int nf = fluid ? s[1] - s[0] : 0, nb = boundary ? s[2] - s[1] : 0;
+      if (nf + nb == 0) continue;
+      CollectBatches(&w, cc, &b);
+      if (nf) SweepRange(&w, fluid, nq, &b, s[0], s[1], 0, &l);
+      if (nb) SweepRange(&w, boundary, nq, &b, s[1], s[2], 1, &l);
     }
   }
 }
