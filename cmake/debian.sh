@@ -20,10 +20,10 @@ frond_install() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 }
 
-# frond_build FOLDER [cmake options]: configure and build.
+# frond_build FOLDER TARGET [cmake options]: configure and build.
 frond_build() {
-  folder=$1
-  shift
+  folder=$1 target=$2
+  shift 2
   cmake -S . -B "$folder" -DCMAKE_BUILD_TYPE=Release "$@"
-  cmake --build "$folder" -j "$(nproc)"
+  cmake --build "$folder" --target "$target" -j "$(nproc)"
 }

@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 . cmake/debian.sh
 
 frond_install $frond_packages
-frond_build build -DBUILD_TESTING=ON
+frond_build build all -DBUILD_TESTING=ON
 [ $# -gt 0 ] || set -- -LE validation-long
 cd build
 exec ctest --output-on-failure "$@"

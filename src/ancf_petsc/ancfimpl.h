@@ -146,7 +146,7 @@ extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
  * P. */
 extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P);
 extern PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P);
-extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J);
+extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, PetscBool choose, Mat *J);
 /* Rows of eliminated coordinates: f = x - prescribed acceleration; x NULL: f = that acceleration. */
 extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
 

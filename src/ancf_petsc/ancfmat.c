@@ -421,10 +421,11 @@ static PetscErrorCode AncfCreateStored(Ancf ancf, PetscInt bs, Mat *J)
 }
 
 /*
-  Matrix for this preconditioner: unassembled for PCBLOCKTRI, else MATSEQBAIJ by default. Unless told otherwise, a set of enough
-  beams to fill half the vector lanes takes PCBLOCKTRI, a smaller one the block ILU(0), exact for these matrices.
+  Matrix for this preconditioner: unassembled for PCBLOCKTRI, else MATSEQBAIJ by default. Unless told otherwise, and if choose is
+  set, a set of enough beams to fill half the vector lanes takes PCBLOCKTRI, a smaller one the block ILU(0), exact for these
+  matrices.
 */
-PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J)
+PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, PetscBool choose, Mat *J)
 {
   PetscBool blocktri, mat, given;
   char prefix[256];
@@ -434,7 +435,7 @@ PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J)
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mat_type", &mat));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-pc_type", &given));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCILU, &blocktri));
-  if (blocktri && !given && !mat && !ancf->exposed && bs == 6 && 2 * ancf->nbeams >= ANCF_LANES)
+  if (choose && blocktri && !given && !mat && !ancf->exposed && bs == 6 && 2 * ancf->nbeams >= ANCF_LANES)
     PetscCall(PCSetType(pc, PCBLOCKTRI));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBLOCKTRI, &blocktri));
   if (blocktri && bs == 6 && !mat)

@@ -504,7 +504,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   if (ancf->form == ANCF_FORM_SECOND) {
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->e, &ancf->U));
     PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->v, &ancf->V));
-    PetscCall(AncfCreateMatrix(ancf, 6, pc, &ancf->J));
+    PetscCall(AncfCreateMatrix(ancf, 6, pc, PETSC_TRUE, &ancf->J));
     PetscCall(TSSetI2Function(ancf->ts, NULL, AncfI2Function, ancf));
     PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
@@ -513,7 +513,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {
-      PetscCall(AncfCreateMatrix(ancf, 12, pc, &ancf->J));
+      PetscCall(AncfCreateMatrix(ancf, 12, pc, PETSC_TRUE, &ancf->J));
       PetscCall(TSSetEquationType(ancf->ts, TS_EQ_ODE_IMPLICIT));
       PetscCall(TSSetIFunction(ancf->ts, NULL, AncfIFunction, ancf));
       PetscCall(TSSetIJacobian(ancf->ts, ancf->J, ancf->J, AncfIJacobian, ancf));
