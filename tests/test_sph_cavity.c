@@ -4,8 +4,9 @@
   Unit box, lid speed 1 m/s along x at y = 1, reached in 1 s, Re = 100 (400 with -re); velocities on the centre lines by the
   kernel's normalised mean. The lid's markers travel with it, and those that leave its span at one end come back at the other:
   over markers that only carry the velocity but stay in place, the fluid next to the lid slips between their rows. A background
-  pressure of rho c_s^2/10 keeps the pressure positive, so that no void opens. Bound: 3 % of the lid speed in the rms and 5 % at
-  any point; the lid's layer of v near x = 0.8 is 4 spacings thick. No marker may leave the box. Options: -across, -re, -tend.
+  pressure of rho c_s^2/10 keeps the pressure positive, so that no void opens. Bounds: 3 % of the lid speed in the rms,
+  and at any point 2 dp U/L, what the steepest of the profiles, about 2 U/L, changes over one spacing. No marker may leave the
+  box. Options: -across, -re, -tend.
 */
 #include "sphcase.h"
 
@@ -154,7 +155,7 @@ int main(int argc, char **argv)
   TEST(outside == 0, "%d markers are outside the box", (int)outside);
   TEST(re == 100 || re == 400, "-re %d: references are for 100 and 400", (int)re);
   TEST_NEAR(sum, 0.0, 0.03, "rms difference over the lid speed");
-  TEST_NEAR(most, 0.0, 0.05, "largest difference over the lid speed");
+  TEST_NEAR(most, 0.0, 2.0 * c.dp, "largest difference over the lid speed");
   PetscCall(PetscFree3(lid.x0, lid.x, lid.v));
   PetscCall(SphDestroy(&sph));
   PetscCall(PetscFinalize());
