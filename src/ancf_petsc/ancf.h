@@ -37,6 +37,8 @@ typedef struct {
 FROND_EXTERN PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf);
 FROND_EXTERN PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[]);
 FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
+/* Sets EA, EI and rhoA of an annulus from diameter, young and density, which must be set, and its inner diameter, m. */
+FROND_EXTERN PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner);
 FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
 /* Supports any node of a beam, before AncfSetUp(): ANCF_END_PIN or ANCF_END_CLAMP. */
 FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
