@@ -534,7 +534,7 @@ static PetscErrorCode TestGroups(void)
 /* A tube weighs and bends like the difference of two rods, and displaces fluid like its outer diameter. */
 static PetscErrorCode TestAnnulus(void)
 {
-  const PetscReal g[3] = {0, 0, -9.81}, E = 20e6, I = PETSC_PI / 64 * (2.56e-6 - 8.1e-7),
+  const PetscReal g[3] = {0, 0, -9.81}, E = 20e6, Ixx = PETSC_PI / 64 * (2.56e-6 - 8.1e-7),
                   A = PETSC_PI / 4 * (1.6e-3 - 9e-4); /* 0.04 and 0.03 m */
   PetscReal w[3], F[3] = {0, 0, 1e-4};
   const PetscReal *e;
@@ -550,7 +550,7 @@ static PetscErrorCode TestAnnulus(void)
   PetscCall(AncfAddPointLoad(a, 0, 1, F));
   PetscCall(AncfSolveStatic(a, 1));
   PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
-  TEST_REL(e[26], F[2] / (3 * E * I), 1e-6, "deflection F L^3/(3 EI) of a tube"); /* cubic: exact but for (v/L)^2 */
+  TEST_REL(e[26], F[2] / (3 * E * Ixx), 1e-6, "deflection F L^3/(3 EI) of a tube"); /* cubic: exact but for (v/L)^2 */
   PetscCall(AncfSetFluidDensity(a, 1000));
   PetscCall(AncfSetGravity(a, g));
   PetscCall(AncfGetWeight(a, w));
