@@ -20,3 +20,6 @@ if(TARGET docs)
   add_test(NAME host_docs COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target docs)
   set_tests_properties(host_docs PROPERTIES LABELS unit TIMEOUT 200)
 endif()
+
+add_test(NAME host_headers COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/host_headers.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(host_headers PROPERTIES LABELS unit TIMEOUT 120 SKIP_RETURN_CODE 77)
