@@ -19,8 +19,8 @@ if [ ! -e "$prefix/lib/pkgconfig/PETSc.pc" ]; then
   tar -xzf "$archive" -C "$folder/source" --strip-components 1
   cd "$folder/source"
   unset PETSC_DIR PETSC_ARCH
-  # The options that Debian's package has and that Frond needs; no Fortran, so that only C is compiled.
-  ./configure PETSC_ARCH=frond --prefix="$prefix" --with-debugging=0 --with-shared-libraries=1 --with-fc=0 --with-cxx=0 --with-x=0 \
+  # The options that Debian's package has and that Frond needs.
+  ./configure PETSC_ARCH=frond --prefix="$prefix" --with-debugging=0 --with-shared-libraries=1 --with-fc=0 --with-x=0 \
     --with-cc=mpicc --COPTFLAGS=-O2 --with-hwloc=0 >"$folder/configure.log" 2>&1 || {
     tail -n 40 "$folder/configure.log"
     exit 1

@@ -14,3 +14,12 @@ set_tests_properties(host_plugin PROPERTIES LABELS unit TIMEOUT 120 SKIP_RETURN_
 add_test(NAME host_python COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 FROND_LIBRARY=$<TARGET_FILE:frond> PYTHONPATH=${PROJECT_SOURCE_DIR}/python
   ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/test_host_python.py ${PROJECT_SOURCE_DIR}/examples)
 set_tests_properties(host_python PROPERTIES LABELS unit TIMEOUT 200 SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+
+# The reference manual: every public function, member and enum documented, the option reference made. Needs doxygen.
+if(TARGET docs)
+  add_test(NAME host_docs COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target docs)
+  set_tests_properties(host_docs PROPERTIES LABELS unit TIMEOUT 200)
+endif()
+
+add_test(NAME host_headers COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/host_headers.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(host_headers PROPERTIES LABELS unit TIMEOUT 120 SKIP_RETURN_CODE 77)

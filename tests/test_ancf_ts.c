@@ -531,6 +531,35 @@ static PetscErrorCode TestGroups(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A tube weighs and bends like the difference of two rods, and displaces fluid like its outer diameter. */
+static PetscErrorCode TestAnnulus(void)
+{
+  const PetscReal g[3] = {0, 0, -9.81}, E = 20e6, Ixx = PETSC_PI / 64 * (2.56e-6 - 8.1e-7),
+                  A = PETSC_PI / 4 * (1.6e-3 - 9e-4); /* 0.04 and 0.03 m */
+  PetscReal w[3], F[3] = {0, 0, 1e-4};
+  const PetscReal *e;
+  AncfBeamSpec s;
+  Ancf a;
+
+  PetscFunctionBegin;
+  PetscCall(SeedSpec(4, &s));
+  PetscCall(AncfBeamSpecSetAnnulus(&s, 0.03));
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+  PetscCall(AncfAddBeam(a, &s, NULL));
+  PetscCall(AncfSetUp(a));
+  PetscCall(AncfAddPointLoad(a, 0, 1, F));
+  PetscCall(AncfSolveStatic(a, 1));
+  PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
+  TEST_REL(e[26], F[2] / (3 * E * Ixx), 1e-6, "deflection F L^3/(3 EI) of a tube"); /* cubic: exact but for (v/L)^2 */
+  PetscCall(AncfSetFluidDensity(a, 1000));
+  PetscCall(AncfSetGravity(a, g));
+  PetscCall(AncfGetWeight(a, w));
+  TEST_REL(w[2], -9.81 * (7200 * A - 1000 * PETSC_PI * 4e-4), 1e-12, "weight of a tube under water");
+  PetscCall(AncfDestroy(&a));
+  TEST_ERROR(AncfBeamSpecSetAnnulus(&s, 0.04), PETSC_ERR_ARG_OUTOFRANGE, "inner diameter");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddBad(AncfBeamSpec s)
 {
   Ancf a;
@@ -698,6 +727,7 @@ int main(int argc, char **argv)
   PetscCall(TestDamping("-ancf_ts_type theta"));
   PetscCall(TestDamping("-ancf_ts_type rk -ancf_substeps 4"));
   PetscCall(TestInnerSupport());
+  PetscCall(TestAnnulus());
   PetscCall(TestGroups());
   PetscCall(TestBadInput());
   PetscCall(TestFailures());

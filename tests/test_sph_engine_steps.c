@@ -270,6 +270,34 @@ static PetscErrorCode Options(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Two markers 0.02 dp apart, in one cell, across a cell border and across the period: refused; 0.2 dp: accepted. */
+static PetscErrorCode Overlap(void)
+{
+  const PetscReal lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1}, at[3] = {0.031, 1.0 / 3.0, 0.0};
+  const PetscBool periodic[3] = {1, 1, 1};
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++)
+    for (int apart = 0; apart < 2; apart++) {
+      const PetscReal d = apart ? 0.1 : 0.01, x[6] = {0.1, 0.2, at[k] - d * 0.1, 0.1, 0.2, at[k] + d * 0.1};
+      PetscErrorCode error;
+      Sph sph;
+      PetscCall(SphCreate(PETSC_COMM_SELF, &sph));
+      PetscCall(SphSetSpacing(sph, 0.1));
+      PetscCall(SphSetSmoothingRatio(sph, 1.5));
+      PetscCall(SphSetSoundSpeed(sph, 10.0));
+      PetscCall(SphSetDomain(sph, lo, hi));
+      PetscCall(SphSetPeriodic(sph, periodic));
+      PetscCall(SphAddFluid(sph, 2, x, NULL, NULL));
+      PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+      error = SphSetUp(sph);
+      PetscCall(PetscPopErrorHandler());
+      TEST((error == PETSC_ERR_ARG_WRONG) == !apart, "place %d, %g dp apart: error %d", k, 2.0 * d, (int)error);
+      PetscCall(SphDestroy(&sph));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -278,6 +306,7 @@ int main(int argc, char **argv)
   PetscCall(SingleAgainstDouble());
   PetscCall(Orders());
   PetscCall(Options());
+  PetscCall(Overlap());
   PetscCall(PetscFinalize());
   return test_report();
 }

@@ -80,6 +80,20 @@ PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner)
+{
+  const PetscReal d2 = spec->diameter * spec->diameter, i2 = inner * inner, A = PETSC_PI / 4 * (d2 - i2);
+
+  PetscFunctionBegin;
+  PetscCheck(inner >= 0 && inner < spec->diameter, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "AncfBeamSpecSetAnnulus: inner diameter %g m must be in [0, %g), the outer diameter", (double)inner,
+             (double)spec->diameter);
+  spec->EA = spec->young * A;
+  spec->EI = spec->young * A * (d2 + i2) / 16; /* pi/64 (d^4 - inner^4) */
+  spec->rhoA = spec->density * A;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AncfCheckPositive(Ancf ancf, const char field[], PetscReal x, const char unit[])
 {
   PetscFunctionBegin;

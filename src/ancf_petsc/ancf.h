@@ -13,6 +13,7 @@
 #include "frondsys.h"
 #include <petscts.h>
 
+/* Beams and their solver. */
 typedef struct _p_Ancf *Ancf;
 
 /* Strain measures: PAPER eps = (r'.r'-1)/2, kappa = |r' x r''|/|r'|^3; ENGINEERING eps = |r'|-1, kappa = |r' x r''|/|r'|^2. */
@@ -37,23 +38,33 @@ typedef struct {
 FROND_EXTERN PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf);
 FROND_EXTERN PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[]);
 FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
+/* Sets EA, EI and rhoA of an annulus from diameter, young and density, which must be set, and its inner diameter, m. */
+FROND_EXTERN PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner);
 FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
 /* Supports any node of a beam, before AncfSetUp(): ANCF_END_PIN or ANCF_END_CLAMP. */
 FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
 FROND_EXTERN PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3]);
 FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
 FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
+/* Strain measure, ANCF_STRAIN_PAPER by default. Before AncfSetUp(). */
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
 FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
 FROND_EXTERN PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping);
 FROND_EXTERN PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes);
+/* Read -ancf_... and the options of TS, SNES, KSP and PC under that prefix. */
 FROND_EXTERN PetscErrorCode AncfSetFromOptions(Ancf ancf);
+/* Check the beams, assemble the mass matrix, make the solver; needed before all that follows. Errors: no beams, a TS type that
+   cannot integrate them. */
 FROND_EXTERN PetscErrorCode AncfSetUp(Ancf ancf);
+/* Print beams and solver; viewer NULL: standard output. */
 FROND_EXTERN PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer);
+/* Free everything; *ancf becomes NULL. */
 FROND_EXTERN PetscErrorCode AncfDestroy(Ancf *ancf);
 
 FROND_EXTERN PetscErrorCode AncfGetTS(Ancf ancf, TS *ts);
+/* Number of beams. */
 FROND_EXTERN PetscErrorCode AncfGetNumBeams(Ancf ancf, PetscInt *n);
+/* Number of nodes of all beams together. */
 FROND_EXTERN PetscErrorCode AncfGetNumNodes(Ancf ancf, PetscInt *n);
 FROND_EXTERN PetscErrorCode AncfGetBeam(Ancf ancf, PetscInt beam, AncfBeamSpec *spec, PetscInt *firstnode,
                                         PetscReal *elementlength);
@@ -65,6 +76,7 @@ FROND_EXTERN PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal
 
 /* Generalised applied forces Q^a (nodes x 6), held constant over the next AncfAdvance(). Writable; ask again before each step. */
 FROND_EXTERN PetscErrorCode AncfZeroLoads(Ancf ancf);
+/* Q^a to write to, nodes x 6; borrowed. */
 FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
 /* Loads at the end of the next AncfAdvance(): Q^a is then linear in time from AncfGetLoads() to these in that
    call, and constant at these afterwards. Returned as a copy of the loads at the start. */
@@ -88,10 +100,12 @@ FROND_EXTERN PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscI
 /* Iterated coupling: AncfRestoreState() goes back to the time of AncfSaveState() as often as wanted, with the history of the
    integrator for one-step methods and alpha2 (a multistep method restarts). Loads are left alone. */
 FROND_EXTERN PetscErrorCode AncfSaveState(Ancf ancf);
+/* Back to the time of AncfSaveState(). Errors: PETSC_ERR_ARG_WRONGSTATE before it. */
 FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
 /* Checkpoints: the acceleration (nodes x 6) that alpha2 carries from step to step, to be set after AncfSetState(); *A is NULL
    for other types. Without it alpha2 starts from the acceleration of the equations of motion. */
 FROND_EXTERN PetscErrorCode AncfGetHistory(Ancf ancf, const PetscReal **A);
+/* Set what AncfGetHistory() gave; NULL or another type than alpha2: nothing is done. */
 FROND_EXTERN PetscErrorCode AncfSetHistory(Ancf ancf, const PetscReal *A);
 
 /* Integrate from the current time to t with `substeps` TS steps (or adaptively). */
@@ -109,6 +123,7 @@ FROND_EXTERN PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscRe
 FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3]);
 /* Force of the supports (clamped and pinned ends) on the beams, and of gravity less buoyancy, N. */
 FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
+/* Gravity less buoyancy on all beams, N. */
 FROND_EXTERN PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3]);
 /* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations; the largest over the groups of beams. */
 FROND_EXTERN PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear);

@@ -5,6 +5,12 @@
 #include "ancfbatch.h"
 #include "blocktri.h"
 
+#if PETSC_VERSION_LT(3, 24, 0)
+typedef void (*AncfOperation)(void);
+#else
+typedef PetscErrorCodeFn *AncfOperation;
+#endif
+
 /* The unassembled matrix: MATSHELL that produces its blocks for PCBLOCKTRI. */
 typedef struct {
   Ancf ancf;
@@ -375,8 +381,8 @@ static PetscErrorCode AncfCreateShell(Ancf ancf, Mat *J)
   s->source = (BlockTriSource){ancf->nbeams, s->first, s->length, ShellFill, s};
   PetscCall(MatCreateShell(ancf->comm, n, n, n, n, s, J));
   PetscCall(MatSetBlockSize(*J, 6));
-  PetscCall(MatShellSetOperation(*J, MATOP_MULT, (void (*)(void))ShellMult));
-  PetscCall(MatShellSetOperation(*J, MATOP_DESTROY, (void (*)(void))ShellDestroy));
+  PetscCall(MatShellSetOperation(*J, MATOP_MULT, (AncfOperation)ShellMult));
+  PetscCall(MatShellSetOperation(*J, MATOP_DESTROY, (AncfOperation)ShellDestroy));
   PetscCall(MatBlockTriSetSource(*J, &s->source));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -388,6 +388,7 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESSetTolerances(snes, 1e-50, 1e-9, 1e-12, 25, 10000));
+  PetscCall(SNESSetForceIteration(snes, PETSC_TRUE)); /* the floor of AncfSetNewtonFloor() must not swallow small loads */
   /* Full steps: bending first stretches the chord, so that the residual rises before it falls; a step that fails is reduced. */
   PetscCall(SNESGetLineSearch(snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));

@@ -15,8 +15,11 @@
 #include "frondsys.h"
 #include <petscpc.h>
 
+/* PETSc type name of the block-tridiagonal solver. */
 #define PCBLOCKTRI "blocktri"
+/* Chains eliminated at a time. */
 #define BLOCKTRI_LANES 8
+/* One number of each of 8 chains. */
 typedef PetscReal BlockTriLanes __attribute__((vector_size(BLOCKTRI_LANES * sizeof(PetscReal))));
 
 /*
@@ -26,13 +29,15 @@ typedef PetscReal BlockTriLanes __attribute__((vector_size(BLOCKTRI_LANES * size
 */
 typedef void (*BlockTriFill)(void *ctx, const PetscInt chain[BLOCKTRI_LANES], PetscInt nrows, BlockTriLanes *D, BlockTriLanes *U);
 
+/* A matrix that makes its blocks on the fly. */
 typedef struct {
-  PetscInt nchains;
+  PetscInt nchains;               /* number of chains */
   const PetscInt *first, *length; /* first block row and number of block rows of each chain; kept, not copied */
-  BlockTriFill fill;
-  void *ctx;
+  BlockTriFill fill;              /* makes the blocks of up to 8 chains */
+  void *ctx;                      /* its first argument */
 } BlockTriSource;
 
+/* Make PCBLOCKTRI known to PETSc; may be called again. libfrond does it when loaded with -dll_append. */
 FROND_EXTERN PetscErrorCode PCBlockTriRegister(void);
 /* The source is kept by reference and must outlive the matrix. */
 FROND_EXTERN PetscErrorCode MatBlockTriSetSource(Mat P, const BlockTriSource *source);

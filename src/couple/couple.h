@@ -13,7 +13,9 @@
 #include "rigid.h"
 #include "sph.h"
 
+/* A fluid coupled to structures. */
 typedef struct _p_Couple *Couple;
+/* A structure as the coupling sees it; references are counted. */
 typedef struct _p_CoupleSurface *CoupleSurface;
 
 /* What a transfer of marker forces lost: marker sums minus generalised sums. Moments about the origin. */
@@ -23,6 +25,7 @@ typedef struct {
   PetscReal twist;                                     /* axial torque that a gradient-deficient beam cannot carry, N m */
 } CoupleAudit;
 
+/* What a structure does for the coupling. All but those called optional must be given. */
 typedef struct {
   /* n markers: rest positions x (n x 3), volumes (n), depths (n); borrowed from the surface. */
   PetscErrorCode (*getmarkers)(CoupleSurface, PetscInt *n, const PetscReal **x, const PetscReal **volume,
@@ -50,18 +53,21 @@ typedef struct {
     goes on with the same bits. A state shared by surfaces (beams of one Ancf) is one surface's to save.
   */
   PetscErrorCode (*statesize)(CoupleSurface, PetscInt *n);
-  PetscErrorCode (*save)(CoupleSurface, PetscReal *state);
-  PetscErrorCode (*load)(CoupleSurface, const PetscReal *state);
+  PetscErrorCode (*save)(CoupleSurface, PetscReal *state);       /* optional */
+  PetscErrorCode (*load)(CoupleSurface, const PetscReal *state); /* optional */
 } CoupleSurfaceOps;
 
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx,
                                                 CoupleSurface *surface);
+/* The ctx given to CoupleSurfaceCreate(); pass the address of a pointer. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetContext(CoupleSurface surface, void *ctx);
+/* The surface's name; borrowed. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name);
 /* A copy of the surface's operations, to drive it outside a Couple. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetOps(CoupleSurface surface, CoupleSurfaceOps *ops);
 /* A held surface (wall, fixed body) takes up any force: the balance counts it as an impulse of walls. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceSetHeld(CoupleSurface surface, PetscBool held);
+/* Give a reference back; the last one frees the surface. *surface becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface);
 
 /* Beam `beam` of ancf, marked by disks of BCE markers dp apart (lines across the thickness in 2D). */
@@ -75,6 +81,7 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char na
                                                     const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3],
                                                     CoupleSurface *surface);
 
+/* An empty coupling. Then: CoupleSetSph(), CoupleAddSurface(), CoupleSetUp(), CoupleStep(). */
 FROND_EXTERN PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple);
 FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
 /* The couple keeps a reference of its own: destroy yours as well. */
@@ -85,16 +92,22 @@ FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax)
 FROND_EXTERN PetscErrorCode CoupleSetIterations(Couple couple, PetscInt n, PetscReal tolerance, PetscReal relaxation);
 /* Iterations made since set-up, and steps that missed the tolerance; either may be NULL. */
 FROND_EXTERN PetscErrorCode CoupleGetIterations(Couple couple, PetscInt *iterations, PetscInt *unconverged);
+/* Read -couple_.... */
 FROND_EXTERN PetscErrorCode CoupleSetFromOptions(Couple couple);
 /* Gives every surface's markers to the fluid and sets the fluid up. Add the fluid markers before. */
 FROND_EXTERN PetscErrorCode CoupleSetUp(Couple couple);
+/* Print the coupling and its surfaces. */
 FROND_EXTERN PetscErrorCode CoupleView(Couple couple, PetscViewer viewer);
+/* Free the coupling and its references of surfaces; the fluid is the caller's. *couple becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleDestroy(Couple *couple);
 
 /* One step of the coupled system, not past tmax; dt (s) is the step taken. */
 FROND_EXTERN PetscErrorCode CoupleStep(Couple couple, PetscReal tmax, PetscReal *dt);
+/* Time (s) and number of steps; either may be NULL. */
 FROND_EXTERN PetscErrorCode CoupleGetTime(Couple couple, PetscReal *t, PetscInt *step);
+/* Number of surfaces. */
 FROND_EXTERN PetscErrorCode CoupleGetNumSurfaces(Couple couple, PetscInt *n);
+/* Surface i (borrowed) and the boundary group of its markers in the fluid; either may be NULL. */
 FROND_EXTERN PetscErrorCode CoupleGetSurface(Couple couple, PetscInt i, CoupleSurface *surface, PetscInt *group);
 /* Audit of the last step's transfer on surface i. */
 FROND_EXTERN PetscErrorCode CoupleGetAudit(Couple couple, PetscInt i, CoupleAudit *audit);
@@ -113,8 +126,11 @@ FROND_EXTERN PetscErrorCode CoupleGetMarkers(Couple couple, PetscInt i, PetscInt
   multistep method of PETSc begins anew). Errors: PETSC_ERR_SUP when a surface cannot save its state.
 */
 typedef struct _p_CoupleState *CoupleState;
+/* Keep the state now in *state, which is made when NULL. */
 FROND_EXTERN PetscErrorCode CoupleSaveState(Couple couple, CoupleState *state);
+/* Back to where CoupleSaveState() was called. */
 FROND_EXTERN PetscErrorCode CoupleRestoreState(Couple couple, CoupleState state);
+/* Free a saved state; *state becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleStateDestroy(CoupleState *state);
 
 /*

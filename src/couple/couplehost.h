@@ -44,11 +44,11 @@ typedef struct {
   PetscErrorCode (*advance)(void *ctx, PetscReal t, const PetscReal *Q);
   /* Optional, as in CoupleSurfaceOps. */
   PetscErrorCode (*momentum)(void *ctx, PetscReal p[3], PetscReal weight[3], PetscReal support[3]);
-  PetscErrorCode (*statesize)(void *ctx, PetscInt *n);
-  PetscErrorCode (*save)(void *ctx, PetscReal *state);
-  PetscErrorCode (*load)(void *ctx, const PetscReal *state);
-  PetscErrorCode (*view)(void *ctx, PetscViewer viewer);
-  PetscErrorCode (*destroy)(void *ctx);
+  PetscErrorCode (*statesize)(void *ctx, PetscInt *n);       /* optional: reals of the state */
+  PetscErrorCode (*save)(void *ctx, PetscReal *state);       /* optional: write them */
+  PetscErrorCode (*load)(void *ctx, const PetscReal *state); /* optional: go back to them */
+  PetscErrorCode (*view)(void *ctx, PetscViewer viewer);     /* optional: print */
+  PetscErrorCode (*destroy)(void *ctx);                      /* optional: free ctx */
 } CoupleHostOps;
 
 /*

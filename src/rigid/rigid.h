@@ -12,17 +12,20 @@
 #include "shortrange.h"
 #include <petscviewer.h>
 
+/* Rigid bodies and their integrator. */
 typedef struct _p_Rigid *Rigid;
 
 typedef struct _p_RigidGeometry *RigidGeometry; /* closed surface mesh or composite of shapes; references are counted */
 
+/* Shapes of a rigid body. */
 typedef enum { RIGID_SPHERE, RIGID_BOX, RIGID_CYLINDER, RIGID_ELLIPSOID, RIGID_CAPSULE, RIGID_MESH, RIGID_COMPOSITE } RigidShape;
 /* Fixed: never moves. Prescribed: velocity and angular velocity (space frame) constant. Free: Newton-Euler. */
 typedef enum { RIGID_FIXED, RIGID_PRESCRIBED, RIGID_FREE } RigidMotion;
 
+/* A rigid body; RigidBodySpecInit() gives the defaults. */
 typedef struct {
-  RigidShape shape;
-  RigidMotion motion;
+  RigidShape shape;   /* shape */
+  RigidMotion motion; /* fixed, prescribed or free */
   /*
     m. sphere: radius; box: three edge lengths; cylinder, capsule (axis = body z): radius, length (of the cylindrical
     part for a capsule, whose caps come on top); ellipsoid: semi-axes. In 2D the extent along z is ignored and set to
@@ -49,6 +52,7 @@ typedef struct {
 */
 FROND_EXTERN PetscErrorCode RigidGeometryCreateSTL(MPI_Comm comm, const char filename[], PetscReal scale,
                                                    RigidGeometry *geometry);
+/* The same from nv vertices (nv x 3, m) and nf facets (nf x 3). */
 FROND_EXTERN PetscErrorCode RigidGeometryCreateMesh(MPI_Comm comm, PetscInt nv, const PetscReal x[], PetscInt nf,
                                                     const PetscInt facets[], RigidGeometry *geometry);
 /*
@@ -62,6 +66,7 @@ FROND_EXTERN PetscErrorCode RigidGeometryCreateComposite(MPI_Comm comm, PetscInt
    may be NULL. */
 FROND_EXTERN PetscErrorCode RigidGeometryGetPlacement(RigidGeometry geometry, PetscReal *volume, PetscReal center[3],
                                                       PetscReal q[4]);
+/* Give a reference back; *geometry becomes NULL. */
 FROND_EXTERN PetscErrorCode RigidGeometryDestroy(RigidGeometry *geometry);
 
 FROND_EXTERN PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid);
@@ -72,11 +77,15 @@ FROND_EXTERN PetscErrorCode RigidBodySpecInit(RigidBodySpec *spec);
 FROND_EXTERN PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec, PetscInt *body);
 FROND_EXTERN PetscErrorCode RigidSetGravity(Rigid rigid, const PetscReal g[3]);
 FROND_EXTERN PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho);
+/* Read -rigid_.... */
 FROND_EXTERN PetscErrorCode RigidSetFromOptions(Rigid rigid);
 FROND_EXTERN PetscErrorCode RigidSetUp(Rigid rigid);
+/* Print the bodies; viewer NULL: standard output. */
 FROND_EXTERN PetscErrorCode RigidView(Rigid rigid, PetscViewer viewer);
+/* Free everything; *rigid becomes NULL. */
 FROND_EXTERN PetscErrorCode RigidDestroy(Rigid *rigid);
 
+/* Number of bodies. */
 FROND_EXTERN PetscErrorCode RigidGetNumBodies(Rigid rigid, PetscInt *n);
 FROND_EXTERN PetscErrorCode RigidGetBody(Rigid rigid, PetscInt body, RigidBodySpec *spec);
 /* X (m), q (-), V (m/s), omega in the space frame (rad/s); each may be NULL. */
@@ -86,12 +95,15 @@ FROND_EXTERN PetscErrorCode RigidSetState(Rigid rigid, PetscInt body, const Pets
                                           const PetscReal V[3], const PetscReal omega[3]);
 /* Time of the state, s (0 at the start). */
 FROND_EXTERN PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t);
+/* Time of the state, s. */
 FROND_EXTERN PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t);
 /* The integrator's own variables, RigidGetPackSize() reals, for restarts that go on bit for bit. */
 #define RIGID_PACK_SIZE 28      /* for each body */
 #define RIGID_JOINT_PACK_SIZE 5 /* for each joint, after the bodies */
+/* How many reals RigidPack() writes. */
 FROND_EXTERN PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n);
 FROND_EXTERN PetscErrorCode RigidPack(Rigid rigid, PetscReal state[]);
+/* Back to what RigidPack() wrote. */
 FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
 /* Linear and angular acceleration (space frame), m/s^2, rad/s^2, from all wrenches of the last step: applied, weight,
    short-range and joints; of a prescribed body, the slope of its table. */
@@ -132,10 +144,12 @@ typedef enum {
   RIGID_JOINT_LINEAR,
   RIGID_JOINT_BEND
 } RigidJointType;
+/* In place of a body: the ground. */
 #define RIGID_GROUND (-1)
 
+/* A joint; RigidJointSpecInit() gives the defaults. */
 typedef struct {
-  RigidJointType type;
+  RigidJointType type;      /* kind */
   PetscInt a, b;            /* bodies, or RIGID_GROUND for one of them */
   PetscReal point[3];       /* m */
   PetscReal pointb[3];      /* spring: its end on b, m */
@@ -152,6 +166,7 @@ typedef struct {
 
 FROND_EXTERN PetscErrorCode RigidJointSpecInit(RigidJointSpec *spec);
 FROND_EXTERN PetscErrorCode RigidAddJoint(Rigid rigid, const RigidJointSpec *spec, PetscInt *joint);
+/* Number of joints. */
 FROND_EXTERN PetscErrorCode RigidGetNumJoints(Rigid rigid, PetscInt *n);
 /* Force (N) and moment about the joint's point (N m) on body a over the last step, space frame; each may be NULL. */
 FROND_EXTERN PetscErrorCode RigidGetJointForce(Rigid rigid, PetscInt joint, PetscReal F[3], PetscReal M[3]);
@@ -171,6 +186,7 @@ FROND_EXTERN PetscErrorCode RigidSetSubsteps(Rigid rigid, PetscInt n);
 */
 typedef enum { RIGID_END_FREE, RIGID_END_PIN, RIGID_END_CLAMP } RigidEnd;
 
+/* A beam of rigid trunks and bend joints; RigidLumpedSpecInit() gives the defaults. */
 typedef struct {
   PetscReal start[3], end[3]; /* m */
   PetscInt trunks;            /* N >= 1 */
@@ -180,7 +196,7 @@ typedef struct {
   PetscReal poisson;    /* 3D: torsion G J = E J/(2 (1 + nu)), J = 2 I */
   PetscReal EI, rhoA;   /* overrides, N m^2, kg/m (2D: N m, kg/m^2); PETSC_DECIDE: from the section */
   PetscReal velocity[3]; /* initial, m/s */
-  RigidEnd end0, end1;
+  RigidEnd end0, end1; /* supports of the two ends */
   PetscReal damping;        /* c of the damper between the free end (end1) and the ground, N s/m; 0: none */
   PetscReal damperaxis[3];  /* its direction, any length > 0 */
   PetscReal hingedamping;   /* of each hinge, N m s/rad */

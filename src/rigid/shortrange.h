@@ -19,6 +19,7 @@
 
 #include "frondsys.h"
 
+/* Parameters of the short-range forces; ShortRangeInit() gives the defaults. */
 typedef struct {
   PetscReal viscosity;   /* mu, Pa s; 0: no lubrication */
   PetscReal cutoff;      /* Dc, m, > roughness */
@@ -29,6 +30,7 @@ typedef struct {
 } ShortRange;
 
 FROND_EXTERN PetscErrorCode ShortRangeInit(ShortRange *p);
+/* Refuse parameters out of range, naming the one. */
 FROND_EXTERN PetscErrorCode ShortRangeCheck(MPI_Comm comm, const ShortRange *p);
 /* Eq. 31: spheres of radii ai, aj (m); PETSC_INFINITY for a plane wall. */
 FROND_EXTERN PetscReal ShortRangeSphere(const ShortRange *p, PetscReal ai, PetscReal aj, PetscReal s);

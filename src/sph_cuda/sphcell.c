@@ -227,44 +227,69 @@ PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *g, int **cellstart, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckPair(Sph sph, const SphGrid *g, PetscInt i, PetscInt j, double tol)
+/* Squared distance of markers i and j, nearest images, m^2. */
+static double Distance2(Sph sph, const SphGrid *g, PetscInt i, PetscInt j)
 {
   double r2 = 0.0;
-
-  PetscFunctionBegin;
   for (int k = 0; k < sph->par.dim; k++) {
     double d = sph->st.x[k][i] - sph->st.x[k][j];
     if (g->periodic[k]) d -= g->length[k] * rint(d / g->length[k]);
     r2 += d * d;
   }
-  if (r2 < tol * tol) {
-    const PetscInt a = PetscMin(sph->id[i], sph->id[j]), b = PetscMax(sph->id[i], sph->id[j]);
-    SETERRQ(sph->comm, PETSC_ERR_ARG_WRONG,
-            "markers %" PetscInt_FMT " and %" PetscInt_FMT
-            " lie on top of one another at (%g, %g, %g): their distance %.3g m must be at least 0.1 sph_dp = %.3g m",
-            a, b, sph->st.x[0][i], sph->st.x[1][i], sph->st.x[2][i], sqrt(r2), tol);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return r2;
 }
 
+/* A pair of markers of cells c and d closer than tol, as numbers in added order, the smallest first; huge numbers when there is
+ * none. */
+static void ClosePair(Sph sph, const SphGrid *g, const int *cellstart, int c, int d, double tol, PetscInt pair[2])
+{
+  for (int i = cellstart[2 * c]; i < cellstart[2 * c + 2]; i++)
+    for (int j = c == d ? i + 1 : cellstart[2 * d]; j < cellstart[2 * d + 2]; j++) {
+      if (fabs(sph->st.x[0][i] - sph->st.x[0][j]) >= tol && !g->periodic[0]) continue;
+      if (Distance2(sph, g, i, j) < tol * tol) {
+        const PetscInt a = PetscMin(sph->id[i], sph->id[j]), b = PetscMax(sph->id[i], sph->id[j]);
+        if (a < pair[0] || (a == pair[0] && b < pair[1])) {
+          pair[0] = a;
+          pair[1] = b;
+        }
+      }
+    }
+}
+
+/* Each pair of neighbouring cells is looked at from one of its sides: half of the 27 neighbours and the cell itself. */
 PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *g, const int *cellstart)
 {
   const double tol = 0.1 * sph->par.dp;
+  const int ncell = g->n[0] * g->n[1] * g->n[2];
+  PetscInt pair[2] = {PETSC_MAX_INT, PETSC_MAX_INT};
 
   PetscFunctionBegin;
-  for (int cz = 0; cz < g->n[2]; cz++)
-    for (int cy = 0; cy < g->n[1]; cy++)
-      for (int cx = 0; cx < g->n[0]; cx++) {
-        const int c = sph_cell_index(g, cx, cy, cz);
-        for (int o = 0; o < 27; o++) {
-          const int nx = sph_cell_neighbour(g, 0, cx, o % 3 - 1), ny = sph_cell_neighbour(g, 1, cy, o / 3 % 3 - 1),
-                    nz = sph_cell_neighbour(g, 2, cz, o / 9 - 1);
-          if (nx < 0 || ny < 0 || nz < 0) continue;
-          const int d = sph_cell_index(g, nx, ny, nz);
-          for (int i = cellstart[2 * c]; i < cellstart[2 * c + 2]; i++)
-            for (int j = cellstart[2 * d]; j < cellstart[2 * d + 2]; j++)
-              if (i < j) PetscCall(CheckPair(sph, g, i, j, tol));
-        }
+#pragma omp parallel
+  {
+    PetscInt mine[2] = {PETSC_MAX_INT, PETSC_MAX_INT};
+#pragma omp for schedule(dynamic, 64)
+    for (int c = 0; c < ncell; c++) {
+      const int cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
+      if (cellstart[2 * c] == cellstart[2 * c + 2]) continue;
+      for (int o = 13; o < 27; o++) {
+        const int nx = sph_cell_neighbour(g, 0, cc[0], o % 3 - 1), ny = sph_cell_neighbour(g, 1, cc[1], o / 3 % 3 - 1),
+                  nz = sph_cell_neighbour(g, 2, cc[2], o / 9 - 1);
+        if (nx >= 0 && ny >= 0 && nz >= 0) ClosePair(sph, g, cellstart, c, sph_cell_index(g, nx, ny, nz), tol, mine);
       }
+    }
+#pragma omp critical
+    if (mine[0] < pair[0] || (mine[0] == pair[0] && mine[1] < pair[1])) {
+      pair[0] = mine[0];
+      pair[1] = mine[1];
+    }
+  }
+  if (pair[0] < PETSC_MAX_INT) {
+    const int i = sph->slot[pair[0]];
+    SETERRQ(sph->comm, PETSC_ERR_ARG_WRONG,
+            "markers %" PetscInt_FMT " and %" PetscInt_FMT
+            " lie on top of one another at (%g, %g, %g): their distance %.3g m must be at least 0.1 sph_dp = %.3g m",
+            pair[0], pair[1], sph->st.x[0][i], sph->st.x[1][i], sph->st.x[2][i], sqrt(Distance2(sph, g, i, sph->slot[pair[1]])),
+            tol);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
