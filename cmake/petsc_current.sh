@@ -34,7 +34,8 @@ if [ ! -e "$prefix/lib/pkgconfig/PETSc.pc" ]; then
 fi
 
 PKG_CONFIG_PATH=$prefix/lib/pkgconfig
-export PKG_CONFIG_PATH
+LD_LIBRARY_PATH=$prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+export PKG_CONFIG_PATH LD_LIBRARY_PATH
 echo "PETSc $(pkg-config --modversion PETSc)"
 cmake -S . -B "$folder/frond" -DCMAKE_BUILD_TYPE=Release -DFROND_CUDA=OFF -DBUILD_TESTING=ON >"$folder/frond.log"
 cmake --build "$folder/frond" -j "$jobs" >>"$folder/frond.log" 2>&1 || {

@@ -73,8 +73,8 @@ static PetscErrorCode Momentum_Beam(void *ctx, PetscReal p[3], PetscReal weight[
 }
 
 /*
-  State of all beams together, saved by beam 0: time, 1 when alpha2 carries an acceleration, supports (6), coordinates, velocities,
-  loads, that acceleration.
+  State of all beams together, saved by beam 0: time, 1 when alpha2 carries an acceleration, supports (6), coordinates,
+  velocities, loads, that acceleration.
 */
 #define BEAM_HEAD 8
 static PetscErrorCode StateSize_Beam(void *ctx, PetscInt *n)
@@ -250,7 +250,8 @@ static PetscErrorCode CreateSurface(Beam *b, const AncfBeamSpec *spec, PetscInt 
   PetscCall(PetscMalloc4(nd + 1, &r.rowstart, 4 * nd, &r.node, n, &r.section, nn, &r.direction));
   PetscCall(PetscMalloc5(4 * nd, &r.shape, 4 * nd, &r.slope, 2 * n, &r.offset, n, &r.volume, n, &r.depth));
   PlaceMarkers(b, spec, c, &r);
-  host = (CoupleHostSpec){dim, nn, r.direction, nd, r.rowstart, r.node, r.shape, r.slope, n, r.section, r.offset, r.volume, r.depth};
+  host =
+      (CoupleHostSpec){dim, nn, r.direction, nd, r.rowstart, r.node, r.shape, r.slope, n, r.section, r.offset, r.volume, r.depth};
   PetscCall(PetscSNPrintf(name, sizeof(name), "beam_%" PetscInt_FMT, b->beam));
   PetscCall(CoupleSurfaceCreateHost(PETSC_COMM_SELF, name, &host, &ops, b, surface));
   PetscCall(PetscFree4(r.rowstart, r.node, r.section, r.direction));

@@ -195,8 +195,8 @@ typedef struct {
   PetscReal young;      /* E, Pa */
   PetscReal poisson;    /* 3D: torsion G J = E J/(2 (1 + nu)), J = 2 I */
   PetscReal EI, rhoA;   /* overrides, N m^2, kg/m (2D: N m, kg/m^2); PETSC_DECIDE: from the section */
-  PetscReal velocity[3]; /* initial, m/s */
-  RigidEnd end0, end1; /* supports of the two ends */
+  PetscReal velocity[3];    /* initial, m/s */
+  RigidEnd end0, end1;      /* supports of the two ends */
   PetscReal damping;        /* c of the damper between the free end (end1) and the ground, N s/m; 0: none */
   PetscReal damperaxis[3];  /* its direction, any length > 0 */
   PetscReal hingedamping;   /* of each hinge, N m s/rad */

@@ -37,15 +37,15 @@ typedef enum { SPH_WALL_BCE, SPH_WALL_ADAMI } SphWallType;
 typedef enum { SPH_REINIT_NONE, SPH_REINIT_SUM, SPH_REINIT_SHEPARD } SphReinitType;
 
 /*
-  Viscous term. EQ6: the paper, Eq. 6. MORRIS: the same with rho_a rho_b (Morris, Fox, Zhu 1997, Eq. 22). ARTIFICIAL: Monaghan (1992) with the factor
-  alpha, for nearly inviscid flows; the viscosity mu is not used then.
+  Viscous term. EQ6: the paper, Eq. 6. MORRIS: the same with rho_a rho_b (Morris, Fox, Zhu 1997, Eq. 22). ARTIFICIAL: Monaghan
+  (1992) with the factor alpha, for nearly inviscid flows; the viscosity mu is not used then.
 */
 typedef enum { SPH_VISCOSITY_EQ6, SPH_VISCOSITY_MORRIS, SPH_VISCOSITY_ARTIFICIAL } SphViscosityType;
 /* Density diffusion: Molteni and Colagrossi (2009), or without the hydrostatic part, Fourtakas et al. (2019). */
 typedef enum { SPH_DIFFUSION_NONE, SPH_DIFFUSION_MOLTENI, SPH_DIFFUSION_FOURTAKAS } SphDiffusionType;
 /*
-  Shifting of the markers relative to the fluid, sphpair.h. SUN: Sun et al. (2017), not at free surfaces; for confined and periodic
-  flows, whose markers would cluster or line up.
+  Shifting of the markers relative to the fluid, sphpair.h. SUN: Sun et al. (2017), not at free surfaces; for confined and
+  periodic flows, whose markers would cluster or line up.
 */
 typedef enum { SPH_SHIFTING_NONE, SPH_SHIFTING_SUN } SphShiftingType;
 /* sphstep.h; rk2 and symplectic evaluate two right-hand sides per step, verlet one. */
@@ -219,9 +219,9 @@ FROND_EXTERN PetscErrorCode SphRestoreState(Sph sph, size_t bytes, const void *b
 
 /* Sums over fluid markers: mass (kg), linear momentum (kg m/s), kinetic energy (J), max speed (m/s), max |rho/rho0-1|. */
 typedef struct {
-  PetscReal mass, momentum[3];             /* kg, kg m/s; in 2D per m */
+  PetscReal mass, momentum[3];            /* kg, kg m/s; in 2D per m */
   PetscReal kinetic, potential, internal; /* J */
-  PetscReal vmax, compression;             /* m/s, - */
+  PetscReal vmax, compression;            /* m/s, - */
 } SphSums;
 /* The sums of SphSums over the fluid now. */
 FROND_EXTERN PetscErrorCode SphGetSums(Sph sph, SphSums *sums);
