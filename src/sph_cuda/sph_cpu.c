@@ -219,13 +219,17 @@ static PetscErrorCode HalfStep_CPU(Sph sph, PetscReal dt)
 
 static PetscErrorCode FullStep_CPU(Sph sph, PetscReal dt)
 {
+  SphCpu *cpu = (SphCpu *)sph->data;
+  double far2;
+
   PetscFunctionBegin;
   if (sph->par.integrator == SPH_INTEGRATOR_RK2)
-    MoveStage(sph, STAGE_RK2, dt);
+    far2 = MoveStage(sph, STAGE_RK2, dt);
   else if (sph->par.integrator == SPH_INTEGRATOR_SYMPLECTIC)
-    MoveStage(sph, STAGE_SYMPLECTIC, dt);
+    far2 = MoveStage(sph, STAGE_SYMPLECTIC, dt);
   else
-    MoveStage(sph, STAGE_VERLET, dt);
+    far2 = MoveStage(sph, STAGE_VERLET, dt);
+  cpu->moved += sqrt(far2); /* over the whole step: saved positions are those at its beginning */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
