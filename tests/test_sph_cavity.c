@@ -2,11 +2,10 @@
   test_sph_cavity.c - lid-driven cavity against Ghia, Ghia, Shin, J. Comput. Phys. 48 (1982).
 
   Unit box, lid speed 1 m/s along x at y = 1, reached in 1 s, Re = 100 (400 with -re); velocities on the centre lines by the
-  kernel's normalised mean. The lid's markers travel with it, and those that leave its span at one end come back at the other:
-  over markers that only carry the velocity but stay in place, the fluid next to the lid slips between their rows. A background
-  pressure of rho c_s^2/10 keeps the pressure positive, so that no void opens. Bounds: 3 % of the lid speed in the rms,
-  and at any point 2 dp U/L, what the steepest of the profiles, about 2 U/L, changes over one spacing. No marker may leave the
-  box. Options: -across, -re, -tend.
+  kernel's normalised mean. The lid's markers travel with it, and those that leave its span at one end come back at the other. A
+  background pressure of rho c_s^2/10 keeps the pressure positive: without one, markers leave through the corners of the lid.
+  Bounds: 3 % of the lid speed in the rms, and at any point 2 dp U/L, what the steepest of the profiles, about 2 U/L, changes
+  over one spacing. No marker may leave the box. Options: -across, -re, -tend.
 */
 #include "sphcase.h"
 
