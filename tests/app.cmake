@@ -13,6 +13,7 @@ endfunction()
 frond_app_test(app_badinput unit)
 frond_app_test(app_run unit)
 frond_app_test(app_help unit)
+frond_app_test(app_rigid validation)
 frond_app_test(app_examples validation)
 
 add_test(NAME app_paraview COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/app_paraview.sh $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_paraview ${CMAKE_CURRENT_SOURCE_DIR})

@@ -56,6 +56,17 @@ typedef struct {
   PetscReal scale;               /* m per unit of the file */
 } SceneBody;
 
+typedef struct {
+  char name[APP_NAME_LEN];
+  RigidLumpedSpec spec;
+  PetscInt body; /* its first trunk */
+} SceneLumped;
+typedef struct {
+  char name[APP_NAME_LEN], a[PETSC_MAX_PATH_LEN], b[PETSC_MAX_PATH_LEN]; /* a, b: bodies or ground */
+  RigidJointSpec spec;
+  PetscInt joint;
+} SceneJoint;
+
 /* Fields of a frame that may be left out. */
 enum { FIELD_VELOCITY, FIELD_DENSITY, FIELD_PRESSURE, FIELD_GROUP, FIELD_ACCELERATION, FIELD_COUNT };
 extern const char *const SceneFields[];
@@ -73,7 +84,10 @@ typedef struct {
   ScenePressure pressure;
   PetscInt nbeams, nbodies;
   SceneBeam *beams;
-  SceneBody *bodies;
+  SceneBody *bodies; /* with the trunks of the lumped beams at the end, once they are built */
+  PetscInt nlumped, njoints;
+  SceneLumped *lumped; /* beams of rigid trunks; beams holds the others */
+  SceneJoint *joints;
   PetscReal tend, dt; /* s; dt only without fluid */
   char outdir[PETSC_MAX_PATH_LEN];
   PetscBool overwrite;
@@ -111,6 +125,21 @@ PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt);
 PetscErrorCode AppInjectFault(App *app);
 /* Position and velocity (m, m/s) at material coordinate s (m) of a beam, and r,x. */
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3]);
+
+/* PETSc's context of the error line: what was being made. */
+#define AppDoing(app, ...)                                                                                                       \
+  do {                                                                                                                           \
+    if ((app)->errors) snprintf((app)->errors->context, sizeof((app)->errors->context), __VA_ARGS__);                            \
+  } while (0)
+
+/* scenerigid.c: lumped beams, joints, short-range forces. */
+PetscErrorCode AppSceneReadLumped(AppScene *scene, PetscInt *trunks);
+PetscErrorCode AppSceneReadJoints(AppScene *scene);
+PetscErrorCode AppBuildLumped(App *app);
+PetscErrorCode AppBuildJoints(App *app);
+PetscErrorCode AppBuildShortRange(App *app);
+PetscErrorCode AppCheckOverlap(App *app);
+PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v[3]);
 
 /* appfluid.c */
 PetscErrorCode AppFluidFill(App *app);

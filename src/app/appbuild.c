@@ -3,12 +3,6 @@
 #include "sphfill.h"
 #include <string.h>
 
-/* PETSc's context of the error line: what was being made. */
-#define AppDoing(app, ...)                                                                                                       \
-  do {                                                                                                                           \
-    if ((app)->errors) snprintf((app)->errors->context, sizeof((app)->errors->context), __VA_ARGS__);                            \
-  } while (0)
-
 static PetscErrorCode build_sph(App *app)
 {
   AppScene *s = &app->scene;
@@ -70,11 +64,12 @@ static PetscErrorCode build_bodies(App *app, PetscReal rho)
   AppScene *s = &app->scene;
 
   PetscFunctionBegin;
-  if (!s->nbodies) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->nbodies && !s->nlumped) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RigidCreate(PETSC_COMM_SELF, &app->rigid));
   PetscCall(RigidSetDimension(app->rigid, app->dim));
   PetscCall(RigidSetGravity(app->rigid, s->gravity));
   PetscCall(RigidSetFluidDensity(app->rigid, rho));
+  PetscCall(AppBuildShortRange(app));
   PetscCall(RigidSetFromOptions(app->rigid));
   for (PetscInt b = 0; b < s->nbodies; b++) {
     RigidBodySpec *spec = &s->bodies[b].spec;
@@ -88,7 +83,10 @@ static PetscErrorCode build_bodies(App *app, PetscReal rho)
     PetscCall(RigidGetBody(app->rigid, b, spec));
     AppDoing(app, "%s", "");
   }
+  PetscCall(AppBuildLumped(app));
+  PetscCall(AppBuildJoints(app));
   PetscCall(RigidSetUp(app->rigid));
+  PetscCall(AppCheckOverlap(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -138,6 +138,10 @@ static PetscErrorCode print_structures(App *app)
     PetscCall(AppBeamPoint(app, b, PetscSqrtReal(L2), r, v, NULL));
     printf("  beam %-12s tip at (%.6g, %.6g, %.6g) m\n", app->scene.beams[b].name, (double)r[0], (double)r[1], (double)r[2]);
   }
+  for (PetscInt b = 0; b < app->scene.nlumped; b++) {
+    PetscCall(AppLumpedTip(app, b, r, v));
+    printf("  beam %-12s tip at (%.6g, %.6g, %.6g) m\n", app->scene.lumped[b].name, (double)r[0], (double)r[1], (double)r[2]);
+  }
   for (PetscInt b = 0; b < app->scene.nbodies; b++) {
     PetscCall(RigidGetState(app->rigid, b, r, NULL, NULL, NULL));
     printf("  body %-12s centre at (%.6g, %.6g, %.6g) m\n", app->scene.bodies[b].name, (double)r[0], (double)r[1], (double)r[2]);

@@ -89,6 +89,31 @@ static PetscErrorCode put_beams(AppHistory h, App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tips of the lumped beams, in the columns that ANCF beams have too, and coordinates of the joints. */
+static PetscErrorCode put_lumped(AppHistory h, App *app)
+{
+  PetscReal r[3], v[3], coordinate;
+  char stem[96];
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < app->scene.nlumped; b++) {
+    PetscCall(AppLumpedTip(app, b, r, v));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_tip_", app->scene.lumped[b].name));
+    PetscCall(put3(h, stem, "m", "position of the beam's last end", r));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_tip_v", app->scene.lumped[b].name));
+    PetscCall(put3(h, stem, "m/s", "velocity of the beam's last end", v));
+  }
+  for (PetscInt i = 0; i < app->scene.njoints; i++) {
+    const SceneJoint *j = &app->scene.joints[i];
+    const PetscBool angle = (PetscBool)(j->spec.type == RIGID_JOINT_HINGE || j->spec.type == RIGID_JOINT_BEND);
+    if (j->spec.type == RIGID_JOINT_BALL) continue;
+    PetscCall(RigidGetJointState(app->rigid, j->joint, &coordinate, NULL));
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_coordinate", j->name));
+    PetscCall(put(h, stem, angle ? "rad" : "m", "angle, shift or elongation of the joint", coordinate));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode put_bodies(AppHistory h, App *app)
 {
   const char *energy = app->dim == 2 ? "J/m" : "J";
@@ -106,6 +131,7 @@ static PetscErrorCode put_bodies(AppHistory h, App *app)
     PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_w", app->scene.bodies[b].name));
     PetscCall(put3(h, stem, "rad/s", "angular velocity of the body, space frame", W));
   }
+  PetscCall(put_lumped(h, app));
   PetscCall(RigidGetEnergy(app->rigid, &kinetic, &potential));
   PetscCall(put(h, "bodies_kinetic", energy, "kinetic energy of all bodies", kinetic));
   PetscCall(put(h, "bodies_potential", energy, "potential energy of all bodies", potential));

@@ -164,6 +164,7 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
 {
   RigidBodySpec *spec = &body->spec;
   PetscInt shape = spec->shape, motion = spec->motion;
+  PetscBool mass = PETSC_FALSE, inertia = PETSC_FALSE;
   const AppOpt opt[] = {
       {OPT_CHOICE, "shape", "Shape", &shape, shapes, NULL},
       {OPT_CHOICE, "motion", "Motion", &motion, motions, NULL},
@@ -175,8 +176,8 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
       {OPT_AXISANGLE, "axisangle", "Initial orientation: axis x,y,z and angle, rad", spec->axisangle, NULL, NULL},
       {OPT_VEC, "velocity", "Velocity, m/s", spec->velocity, NULL, NULL},
       {OPT_VEC, "omega", "Angular velocity in the space frame, rad/s", spec->omega, NULL, NULL},
-      {OPT_REAL, "mass", "Mass in place of density, kg (-1: derived)", &spec->mass, NULL, NULL},
-      {OPT_VEC, "inertia", "Principal moments in place of density, kg m^2 (-1: derived)", spec->inertia, NULL, NULL},
+      {OPT_REAL, "mass", "Mass in place of density, kg (default: derived)", &spec->mass, NULL, &mass},
+      {OPT_VEC, "inertia", "Principal moments in place of density, kg m^2 (default: derived)", spec->inertia, NULL, &inertia},
       {OPT_SUBSET, "lock", "Motions that a free body may not make: along x, y, z and about x, y, z", spec->lock, locks, NULL},
       {OPT_STRING, "file", "mesh: STL file of the closed surface (needed for a mesh)", body->file, NULL, NULL},
       {OPT_REAL, "scale", "mesh: metres per unit of the file", &body->scale, NULL, NULL},
@@ -184,6 +185,12 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
 
   PetscFunctionBegin;
   PetscCall(AppOptionsRead(prefix, title, COUNT(opt), opt));
+  PetscCheck(!mass || spec->mass > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%smass = %g kg must be positive", prefix,
+             (double)spec->mass);
+  for (int a = 0; a < 3 && inertia; a++)
+    PetscCheck(spec->inertia[a] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "%sinertia = %g,%g,%g kg m^2: each moment must be positive", prefix, (double)spec->inertia[0],
+               (double)spec->inertia[1], (double)spec->inertia[2]);
   spec->shape = (RigidShape)shape;
   spec->motion = (RigidMotion)motion;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -230,6 +237,9 @@ static PetscErrorCode read_bodies(AppScene *s, const AppNames *names, PetscBool 
     for (PetscInt j = 0; j < s->nbeams; j++)
       PetscCheck(strcasecmp(s->beams[j].name, body->name), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
                  "bodies: the name '%s' is a beam's already", body->name);
+    for (PetscInt j = 0; j < s->nlumped; j++)
+      PetscCheck(strcasecmp(s->lumped[j].name, body->name), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+                 "bodies: the name '%s' is a beam's already", body->name);
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "body_%s_", body->name));
     PetscCall(PetscSNPrintf(title, sizeof(title), "Body '%s'", body->name));
     PetscCall(read_body(prefix, title, body, set));
@@ -245,6 +255,7 @@ static PetscErrorCode read_bodies(AppScene *s, const AppNames *names, PetscBool 
 static PetscErrorCode read_structures(AppScene *s)
 {
   AppNames beams = {0, NULL}, bodies = {0, NULL};
+  PetscInt trunks;
   PetscBool help;
   const AppOpt opt[] = {
       {OPT_NAMES, "beams", "Names of the beams, separated by commas", &beams, NULL, NULL},
@@ -256,9 +267,12 @@ static PetscErrorCode read_structures(AppScene *s)
   PetscCall(PetscOptionsHasHelp(NULL, &help));
   s->nbeams = beams.n;
   s->nbodies = bodies.n;
-  PetscCall(PetscCalloc2(beams.n, &s->beams, bodies.n, &s->bodies));
+  PetscCall(PetscCalloc1(beams.n, &s->beams));
   PetscCall(read_beams(s, &beams, help));
+  PetscCall(AppSceneReadLumped(s, &trunks));
+  PetscCall(PetscCalloc1((size_t)(bodies.n + trunks), &s->bodies));
   PetscCall(read_bodies(s, &bodies, help));
+  PetscCall(AppSceneReadJoints(s));
   PetscCall(PetscFree(beams.name));
   PetscCall(PetscFree(bodies.name));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,7 +289,7 @@ static PetscErrorCode check_given(const AppScene *s, const SceneSet *set)
              (double)s->histevery);
   PetscCheck(s->progressevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "progress_every = %g s must be 0 (never) or more",
              (double)s->progressevery);
-  PetscCheck(s->fluid || s->nbeams || s->nbodies, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+  PetscCheck(s->fluid || s->nbeams || s->nbodies || s->nlumped, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
              "nothing to simulate: fluid is false, and neither beams nor bodies are listed");
   if (s->fluid) {
     PetscCheck(set->lo && set->hi, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
@@ -347,6 +361,9 @@ PetscErrorCode AppSceneCheck(const AppScene *s, PetscInt dim)
 PetscErrorCode AppSceneDestroy(AppScene *s)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree2(s->beams, s->bodies));
+  PetscCall(PetscFree(s->beams));
+  PetscCall(PetscFree(s->bodies));
+  PetscCall(PetscFree(s->lumped));
+  PetscCall(PetscFree(s->joints));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

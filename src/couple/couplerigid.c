@@ -122,7 +122,7 @@ static PetscErrorCode ApplyForces_Rigid(CoupleSurface s, const PetscReal *f, Cou
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Joint forces are no part of RigidGetAcceleration(): jointed bodies go by their mean acceleration over the step. */
+/* RigidGetAcceleration() is that of the last substep, joints included: jointed bodies go by their mean over the step instead. */
 static PetscErrorCode Advance_Rigid(CoupleSurface s, PetscReal t)
 {
   Body *b = (Body *)s->ctx;
@@ -144,7 +144,8 @@ static PetscErrorCode Advance_Rigid(CoupleSurface s, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Weight: what accelerates the body beyond the fluid's force by itself; support: what joints add to that. */
+/* Weight: what accelerates the body beyond the fluid's force by itself; support: by how much the
+   mean acceleration of a jointed body over the step differs from that of the last substep. */
 static PetscErrorCode Momentum_Rigid(CoupleSurface s, PetscReal p[3], PetscReal weight[3], PetscReal support[3])
 {
   const Body *b = (const Body *)s->ctx;
