@@ -7,7 +7,7 @@ endif()
 function(frond_app_test name label)
   add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
     ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/${name}.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/${name} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 400 SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 800 SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
 endfunction()
 
 frond_app_test(app_badinput unit)
