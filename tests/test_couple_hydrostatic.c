@@ -180,7 +180,7 @@ static PetscErrorCode Run(Tank *t, PetscBool table)
   PetscCall(CoupleGetBalance(couple, &bal));
   lift /= span;
   printf("%" PetscInt_FMT "D tank, dp %g m: pressure error max %.4f rms %.4f of rho g H; buoyancy/(rho g V) %.4f; speed %.2e "
-                          "sqrt(gH); momentum residual %.1e of %.3g kg m/s\n",
+         "sqrt(gH); momentum residual %.1e of %.3g kg m/s\n",
          t->dim, (double)t->dp, error, rms, lift / weight, sums.vmax / sqrt(G * t->height), (double)bal.residual[up],
          (double)bal.scale);
   TEST_NEAR(error, 0.0, 0.02, "largest pressure error over rho g H");

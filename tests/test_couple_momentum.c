@@ -161,7 +161,8 @@ static PetscErrorCode Run(SphPrecision precision, PetscInt steps, PetscReal **st
   PetscCall(SphGetFields(s.sph, &(SphFields){.x = *state, .v = *state + 3 * (n + nb)}));
   PetscCall(CoupleGetBalance(s.couple, &b));
   *residual = PetscMax(PetscAbsReal(b.residual[0]), PetscMax(PetscAbsReal(b.residual[1]), PetscAbsReal(b.residual[2])));
-  *bound += 1000.0 * PETSC_MACHINE_EPSILON * (b.scale + 1000.0 * 0.4 * 0.4 * 0.32); /* and of the sums of the balance itself, ten a step */
+  *bound += 1000.0 * PETSC_MACHINE_EPSILON *
+            (b.scale + 1000.0 * 0.4 * 0.4 * 0.32); /* and of the sums of the balance itself, ten a step */
   printf("%s: residual %.2e kg m/s, bound %.2e, momentum scale %.3g\n", SphPrecisions[precision], (double)*residual,
          (double)*bound, (double)b.scale);
   PetscCall(PetscFree(a));

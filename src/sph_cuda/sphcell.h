@@ -8,11 +8,11 @@
 #define SPHCELL_H
 
 typedef struct {
-  double lo[3];    /* origin, m */
-  double edge[3];  /* cell edges, m */
+  double lo[3];     /* origin, m */
+  double edge[3];   /* cell edges, m */
   double length[3]; /* period along periodic axes, m, else 0 */
-  int    n[3];     /* cells per axis */
-  int    periodic[3];
+  int n[3];         /* cells per axis */
+  int periodic[3];
 } SphGrid;
 
 #if defined(__CUDACC__)
@@ -40,7 +40,8 @@ SPH_CELL_INLINE int sph_cell_index(const SphGrid *g, int cx, int cy, int cz)
   return (cz * g->n[1] + cy) * g->n[0] + cx;
 }
 
-/* Position relative to the centre of cell coordinate c, taking the nearest periodic image: small numbers that keep their digits in float. */
+/* Position relative to the centre of cell coordinate c, taking the nearest periodic image: small numbers that keep their digits
+ * in float. */
 SPH_CELL_INLINE double sph_cell_offset(const SphGrid *g, int k, int c, double x)
 {
   double d = x - (g->lo[k] + ((double)c + 0.5) * g->edge[k]);

@@ -1,4 +1,5 @@
-/* sphfill.c - initial lattices. A site belongs to the first of wall, body and fluid that claims it: walls lie outside the box, `keep` carves bodies out. */
+/* sphfill.c - initial lattices. A site belongs to the first of wall, body and fluid that claims it: walls lie outside the box,
+ * `keep` carves bodies out. */
 #include "sphfill.h"
 #include <math.h>
 
@@ -15,16 +16,20 @@ static PetscErrorCode SitesPerAxis(PetscInt dim, PetscReal dp, const PetscReal l
     const double sites = k < dim ? floor((hi[k] - lo[k]) / dp + 0.5 * (1.0 + 1e-9)) : 1.0;
     n[k] = 0;
     total *= PetscMax(sites, 0.0);
-    PetscCheck(total < SPH_MAXSITES, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "the box (%g, %g, %g) to (%g, %g, %g) m holds more than %g lattice sites of sph_dp = %g m: use a larger sph_dp or a smaller box", (double)lo[0], (double)lo[1], (double)lo[2], (double)hi[0], (double)hi[1],
-               (double)hi[2], SPH_MAXSITES, (double)dp);
+    PetscCheck(total < SPH_MAXSITES, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "the box (%g, %g, %g) to (%g, %g, %g) m holds more than %g lattice sites of sph_dp = %g m: use a larger sph_dp or "
+               "a smaller box",
+               (double)lo[0], (double)lo[1], (double)lo[2], (double)hi[0], (double)hi[1], (double)hi[2], SPH_MAXSITES,
+               (double)dp);
     n[k] = (PetscInt)PetscMax(sites, 0.0);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphFillBox(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], SphFillKeep keep, void *ctx, PetscInt *count, PetscReal **xout)
+PetscErrorCode SphFillBox(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], SphFillKeep keep, void *ctx,
+                          PetscInt *count, PetscReal **xout)
 {
-  PetscInt   n[3], m = 0;
+  PetscInt n[3], m = 0;
   PetscReal *x;
 
   PetscFunctionBegin;
@@ -33,7 +38,8 @@ PetscErrorCode SphFillBox(PetscInt dim, PetscReal dp, const PetscReal lo[3], con
   for (PetscInt k = 0; k < n[2]; k++)
     for (PetscInt j = 0; j < n[1]; j++)
       for (PetscInt i = 0; i < n[0]; i++) {
-        const PetscReal s[3] = {lo[0] + ((PetscReal)i + 0.5) * dp, lo[1] + ((PetscReal)j + 0.5) * dp, dim == 3 ? lo[2] + ((PetscReal)k + 0.5) * dp : 0.0};
+        const PetscReal s[3] = {lo[0] + ((PetscReal)i + 0.5) * dp, lo[1] + ((PetscReal)j + 0.5) * dp,
+                                dim == 3 ? lo[2] + ((PetscReal)k + 0.5) * dp : 0.0};
         if (keep && !keep(s, ctx)) continue;
         for (int d = 0; d < 3; d++) x[3 * m + d] = s[d];
         m++;
@@ -51,12 +57,14 @@ static PetscReal DepthBelow(PetscInt i, PetscInt n, PetscReal dp, PetscBool low,
   return 0.0;
 }
 
-PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], const PetscBool face[6], const PetscBool periodic[3], PetscReal depthmax, PetscInt *count, PetscReal **xout, PetscReal **vout, PetscReal **dout)
+PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], const PetscBool face[6],
+                            const PetscBool periodic[3], PetscReal depthmax, PetscInt *count, PetscReal **xout, PetscReal **vout,
+                            PetscReal **dout)
 {
-  const PetscInt  layers = (PetscInt)ceil(depthmax / dp);
+  const PetscInt layers = (PetscInt)ceil(depthmax / dp);
   const PetscReal vol = dim == 2 ? dp * dp : dp * dp * dp;
-  PetscInt        n[3], a[3], b[3], m = 0, total = 1;
-  PetscReal      *x, *v, *d;
+  PetscInt n[3], a[3], b[3], m = 0, total = 1;
+  PetscReal *x, *v, *d;
 
   PetscFunctionBegin;
   PetscCall(SitesPerAxis(dim, dp, lo, hi, n));
@@ -73,8 +81,8 @@ PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], c
   for (PetscInt k = a[2]; k < b[2]; k++)
     for (PetscInt j = a[1]; j < b[1]; j++)
       for (PetscInt i = a[0]; i < b[0]; i++) {
-        const PetscInt  s[3] = {i, j, k};
-        PetscReal       depth = 0.0;
+        const PetscInt s[3] = {i, j, k};
+        PetscReal depth = 0.0;
         for (int c = 0; c < dim; c++) depth = PetscMax(depth, DepthBelow(s[c], n[c], dp, face[2 * c], face[2 * c + 1]));
         if (depth <= 0.0) continue;
         for (int c = 0; c < 3; c++) x[3 * m + c] = c < dim ? lo[c] + ((PetscReal)s[c] + 0.5) * dp : 0.0;

@@ -15,37 +15,37 @@
 #define SPH_VERLET_EVERY 40
 
 typedef struct {
-  PetscInt  dim;
-  PetscReal dp;      /* initial spacing, m */
-  PetscReal h;       /* smoothing length, m */
-  PetscReal rho0;    /* reference density, kg/m^3 */
-  PetscReal mu;      /* viscosity, Pa s */
-  PetscReal mupair;  /* viscosity in Eq. 6, lattice-normalised, Pa s */
+  PetscInt dim;
+  PetscReal dp;           /* initial spacing, m */
+  PetscReal h;            /* smoothing length, m */
+  PetscReal rho0;         /* reference density, kg/m^3 */
+  PetscReal mu;           /* viscosity, Pa s */
+  PetscReal mupair;       /* viscosity in Eq. 6, lattice-normalised, Pa s */
   PetscReal wnorm, fnorm; /* norms of W (1/m^dim) and F (1/m^(dim+2)), lattice-normalised */
-  PetscReal vmax;    /* expected maximum speed, m/s */
-  PetscReal cs;      /* speed of sound, m/s */
-  PetscReal gamma;   /* Eq. 7, - */
-  PetscReal B;       /* cs^2 rho0/gamma, Pa */
-  PetscReal pb;      /* background pressure, Pa */
-  PetscReal zeta;    /* XSPH factor, - */
-  PetscReal epsilon; /* Eq. 6, - */
-  PetscReal f[3];    /* body force, m/s^2 */
+  PetscReal vmax;         /* expected maximum speed, m/s */
+  PetscReal cs;           /* speed of sound, m/s */
+  PetscReal gamma;        /* Eq. 7, - */
+  PetscReal B;            /* cs^2 rho0/gamma, Pa */
+  PetscReal pb;           /* background pressure, Pa */
+  PetscReal zeta;         /* XSPH factor, - */
+  PetscReal epsilon;      /* Eq. 6, - */
+  PetscReal f[3];         /* body force, m/s^2 */
   PetscReal lo[3], hi[3];
   PetscBool periodic[3];
   PetscReal dtfixed; /* s, or PETSC_DECIDE */
   PetscReal cfl;
-  PetscReal dtmin;   /* s; 0 for none */
-  int       slip;    /* SphSlipType */
-  PetscInt  reinitevery, checkevery;
-  int       kernel; /* SphKernelType */
-  int       precision, wall, reinit;
-  PetscBool lattice;    /* normalise kernel and viscosity on the initial lattice */
-  int       viscosity;  /* SphViscosityType */
-  PetscReal alpha;      /* artificial viscosity, - */
-  int       diffusion;  /* SphDiffusionType */
-  PetscReal delta;      /* density diffusion, - */
-  int       integrator; /* SphIntegratorType */
-  int       shifting;   /* SphShiftingType */
+  PetscReal dtmin; /* s; 0 for none */
+  int slip;        /* SphSlipType */
+  PetscInt reinitevery, checkevery;
+  int kernel; /* SphKernelType */
+  int precision, wall, reinit;
+  PetscBool lattice;     /* normalise kernel and viscosity on the initial lattice */
+  int viscosity;         /* SphViscosityType */
+  PetscReal alpha;       /* artificial viscosity, - */
+  int diffusion;         /* SphDiffusionType */
+  PetscReal delta;       /* density diffusion, - */
+  int integrator;        /* SphIntegratorType */
+  int shifting;          /* SphShiftingType */
   PetscReal shiftfactor; /* - */
 } SphParams;
 
@@ -73,8 +73,8 @@ static inline PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t byte
 {
   PetscFunctionBegin;
   if (b->way != SPH_BUFFER_COUNT) {
-    PetscCheck(b->at + bytes <= b->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "the buffer of a fluid state has %zu bytes; it needs more",
-               b->size);
+    PetscCheck(b->at + bytes <= b->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+               "the buffer of a fluid state has %zu bytes; it needs more", b->size);
     if (b->way == SPH_BUFFER_SAVE)
       memcpy(b->p + b->at, data, bytes);
     else
@@ -86,55 +86,56 @@ static inline PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t byte
 
 typedef struct _SphOps {
   PetscErrorCode (*setup)(Sph);
-  PetscErrorCode (*build)(Sph);                    /* sort markers and find cell ranges when needed */
-  PetscErrorCode (*rates)(Sph);                    /* all right-hand sides at the current state */
-  PetscErrorCode (*halfstep)(Sph, PetscReal dt);   /* sph_step_half(); not called with verlet */
-  PetscErrorCode (*fullstep)(Sph, PetscReal dt);   /* sph_step_full_<integrator>(), verlet with span = sph->verletspan */
-  PetscErrorCode (*reinit)(Sph);                   /* Eq. 9 */
+  PetscErrorCode (*build)(Sph);                  /* sort markers and find cell ranges when needed */
+  PetscErrorCode (*rates)(Sph);                  /* all right-hand sides at the current state */
+  PetscErrorCode (*halfstep)(Sph, PetscReal dt); /* sph_step_half(); not called with verlet */
+  PetscErrorCode (*fullstep)(Sph, PetscReal dt); /* sph_step_full_<integrator>(), verlet with span = sph->verletspan */
+  PetscErrorCode (*reinit)(Sph);                 /* Eq. 9 */
   PetscErrorCode (*motion)(Sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a);
   PetscErrorCode (*force)(Sph, PetscInt group, PetscReal *f);
   PetscErrorCode (*limits)(Sph, PetscReal *vmax, PetscReal *amax);
-  PetscErrorCode (*pull)(Sph);                     /* make the host arrays current */
-  PetscErrorCode (*push)(Sph);                     /* host arrays changed */
+  PetscErrorCode (*pull)(Sph); /* make the host arrays current */
+  PetscErrorCode (*push)(Sph); /* host arrays changed */
   PetscErrorCode (*destroy)(Sph);
-  PetscErrorCode (*check)(Sph);                    /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
-  PetscErrorCode (*state)(Sph, SphBuffer *);       /* move the search structure; NULL: it is built anew when a state is saved or restored */
+  PetscErrorCode (*check)(Sph); /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
+  PetscErrorCode (*state)(Sph,
+                          SphBuffer *); /* move the search structure; NULL: it is built anew when a state is saved or restored */
 } SphOps;
 
 struct _p_Sph {
-  MPI_Comm  comm;
-  char      prefix[64];
-  char      type[16];
+  MPI_Comm comm;
+  char prefix[64];
+  char type[16];
   SphParams par;
   PetscBool hset, hratioset, vmaxset, csset, domainset, setup;
   PetscReal hratio;
 
-  PetscInt  n, nfluid, ngroups; /* markers; fluid ones; boundary groups */
-  PetscInt  cap;                /* room in the arrays below */
-  PetscInt *groupstart;         /* ngroups+1 offsets in added order */
-  PetscInt  groupcap;
-  PetscInt  left;               /* fluid markers that left through an open side */
+  PetscInt n, nfluid, ngroups; /* markers; fluid ones; boundary groups */
+  PetscInt cap;                /* room in the arrays below */
+  PetscInt *groupstart;        /* ngroups+1 offsets in added order */
+  PetscInt groupcap;
+  PetscInt left; /* fluid markers that left through an open side */
 
-  SphState  st, stn;            /* now; at the beginning of the step */
-  SphRates  rate;
-  double   *m;                  /* mass, kg */
-  double   *wallratio;          /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0 */
-  double   *ab[3];              /* boundary acceleration, m/s^2 */
-  int      *group;              /* -1 fluid, -2 left, else group */
-  int      *id, *slot;
-  double   *zero;               /* array of zeros that stands for those of the above that no term reads, or NULL */
-  PetscReal backendbytes;       /* memory of the backend on the host, bytes */
+  SphState st, stn; /* now; at the beginning of the step */
+  SphRates rate;
+  double *m;         /* mass, kg */
+  double *wallratio; /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0 */
+  double *ab[3];     /* boundary acceleration, m/s^2 */
+  int *group;        /* -1 fluid, -2 left, else group */
+  int *id, *slot;
+  double *zero;           /* array of zeros that stands for those of the above that no term reads, or NULL */
+  PetscReal backendbytes; /* memory of the backend on the host, bytes */
 
-  PetscReal t, dt;              /* time and current step, s */
-  PetscInt  step;
-  PetscReal speedwarned;        /* the speed at the last warning about the speed of sound, m/s */
+  PetscReal t, dt; /* time and current step, s */
+  PetscInt step;
+  PetscReal speedwarned;                        /* the speed at the last warning about the speed of sound, m/s */
   PetscBool insidestep, fixedwarned, evaluated; /* evaluated: second-stage rates are there already */
-  PetscInt  verletstep;         /* steps since stn was last invalid: 0 asks for an Euler step */
-  PetscReal dtold, verletspan;  /* s; span of the Verlet step in progress, 0 for Euler */
-  PetscReal evaluations;        /* marker right-hand sides evaluated */
+  PetscInt verletstep;                          /* steps since stn was last invalid: 0 asks for an Euler step */
+  PetscReal dtold, verletspan;                  /* s; span of the Verlet step in progress, 0 for Euler */
+  PetscReal evaluations;                        /* marker right-hand sides evaluated */
 
   const SphOps *ops;
-  void         *data;           /* backend */
+  void *data; /* backend */
 };
 
 FROND_VISIBLE extern const SphOps SphOps_CPU;
@@ -147,7 +148,8 @@ extern PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, S
 
 /* sphcell.c: grid for the markers as they are, and a stable sort of all arrays into cell order. */
 extern PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *grid);
-extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap, void *scratch); /* scratch: 12 n bytes, for doubles */
+extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap,
+                                     void *scratch); /* scratch: 12 n bytes, for doubles */
 extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *cellstart);
 
 /* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
@@ -156,7 +158,8 @@ static inline int SphTwoVelocities(const SphParams *p)
   return p->zeta > 0.0 || p->shifting != SPH_SHIFTING_NONE || p->wall == SPH_WALL_ADAMI;
 }
 
-/* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those that no term reads. */
+/* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those
+ * that no term reads. */
 extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share);
 extern PetscErrorCode SphFreeArrays(Sph sph);
 

@@ -315,8 +315,8 @@ PetscErrorCode SphSetCFL(Sph sph, PetscReal cfl)
 PetscErrorCode SphSetMinTimeStep(Sph sph, PetscReal dtmin)
 {
   PetscFunctionBegin;
-  PetscCheck(dtmin >= 0.0 && !PetscIsInfOrNanReal(dtmin), sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "sph_dt_min = %g: must be >= 0 (s)",
-             (double)dtmin);
+  PetscCheck(dtmin >= 0.0 && !PetscIsInfOrNanReal(dtmin), sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_dt_min = %g: must be >= 0 (s)", (double)dtmin);
   sph->par.dtmin = dtmin;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -421,33 +421,38 @@ static PetscErrorCode OptionsMethod(Sph sph, PetscOptionItems *PetscOptionsObjec
 static PetscErrorCode OptionsForms(Sph sph, PetscOptionItems *PetscOptionsObject)
 {
   SphParams *p = &sph->par;
-  PetscEnum  e;
-  PetscReal  r;
-  PetscBool  set, set2;
+  PetscEnum e;
+  PetscReal r;
+  PetscBool set, set2;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsEnum("-sph_viscosity_type", "Viscous term: eq6, morris, or artificial (needs no sph_viscosity)", "SphSetViscosityType", SphViscosityTypes, (PetscEnum)p->viscosity, &e, &set));
+  PetscCall(PetscOptionsEnum("-sph_viscosity_type", "Viscous term: eq6, morris, or artificial (needs no sph_viscosity)",
+                             "SphSetViscosityType", SphViscosityTypes, (PetscEnum)p->viscosity, &e, &set));
   if (set) PetscCall(SphSetViscosityType(sph, (SphViscosityType)e));
-  PetscCall(PetscOptionsReal("-sph_artificial_alpha", "Factor alpha of the artificial viscosity", "SphSetArtificialViscosity", p->alpha, &r, &set));
+  PetscCall(PetscOptionsReal("-sph_artificial_alpha", "Factor alpha of the artificial viscosity", "SphSetArtificialViscosity",
+                             p->alpha, &r, &set));
   if (set) PetscCall(SphSetArtificialViscosity(sph, r));
   e = (PetscEnum)p->diffusion;
   r = p->delta;
-  PetscCall(PetscOptionsEnum("-sph_density_diffusion", "Density diffusion between fluid markers", "SphSetDensityDiffusion", SphDiffusionTypes, e, &e, &set));
-  PetscCall(PetscOptionsReal("-sph_density_diffusion_delta", "Factor delta of the density diffusion", "SphSetDensityDiffusion", r, &r, &set2));
+  PetscCall(PetscOptionsEnum("-sph_density_diffusion", "Density diffusion between fluid markers", "SphSetDensityDiffusion",
+                             SphDiffusionTypes, e, &e, &set));
+  PetscCall(PetscOptionsReal("-sph_density_diffusion_delta", "Factor delta of the density diffusion", "SphSetDensityDiffusion", r,
+                             &r, &set2));
   if (set || set2) PetscCall(SphSetDensityDiffusion(sph, (SphDiffusionType)e, r));
   e = (PetscEnum)p->shifting;
   r = p->shiftfactor;
-  PetscCall(PetscOptionsEnum("-sph_shifting", "Marker shifting, not at free surfaces: for confined and periodic flows", "SphSetShifting",
-                             SphShiftingTypes, e, &e, &set));
+  PetscCall(PetscOptionsEnum("-sph_shifting", "Marker shifting, not at free surfaces: for confined and periodic flows",
+                             "SphSetShifting", SphShiftingTypes, e, &e, &set));
   PetscCall(PetscOptionsReal("-sph_shifting_factor", "Factor of the shifting velocity", "SphSetShifting", r, &r, &set2));
   if (set || set2) PetscCall(SphSetShifting(sph, (SphShiftingType)e, r));
-  PetscCall(PetscOptionsEnum("-sph_slip", "Slip along boundary markers: none, or free (no friction; sph_wall adami)", "SphSetSlip",
-                             SphSlipTypes, (PetscEnum)p->slip, &e, &set));
+  PetscCall(PetscOptionsEnum("-sph_slip", "Slip along boundary markers: none, or free (no friction; sph_wall adami)",
+                             "SphSetSlip", SphSlipTypes, (PetscEnum)p->slip, &e, &set));
   if (set) PetscCall(SphSetSlip(sph, (SphSlipType)e));
-  PetscCall(PetscOptionsReal("-sph_dt_min", "Floor of the time step, below which the run ends (s); 0 for none", "SphSetMinTimeStep",
-                             p->dtmin, &r, &set));
+  PetscCall(PetscOptionsReal("-sph_dt_min", "Floor of the time step, below which the run ends (s); 0 for none",
+                             "SphSetMinTimeStep", p->dtmin, &r, &set));
   if (set) PetscCall(SphSetMinTimeStep(sph, r));
-  PetscCall(PetscOptionsEnum("-sph_integrator", "Time integration of the fluid", "SphSetIntegrator", SphIntegratorTypes, (PetscEnum)p->integrator, &e, &set));
+  PetscCall(PetscOptionsEnum("-sph_integrator", "Time integration of the fluid", "SphSetIntegrator", SphIntegratorTypes,
+                             (PetscEnum)p->integrator, &e, &set));
   if (set) PetscCall(SphSetIntegrator(sph, (SphIntegratorType)e));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -481,14 +486,16 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_max_speed %g m/s, sph_sound_speed %g m/s\n", (double)p->vmax, (double)p->cs));
   PetscCall(PetscViewerASCIIPrintf(
       viewer,
-      "  sph_xsph %g, sph_viscosity_epsilon %g, sph_lattice %d, sph_wall %s, sph_reinit %s every %" PetscInt_FMT
-      " steps\n",
-      (double)p->zeta, (double)p->epsilon, p->lattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit],
-      p->reinitevery));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_viscosity_type %s, sph_artificial_alpha %g, sph_density_diffusion %s, sph_density_diffusion_delta %g, sph_integrator %s\n", SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
+      "  sph_xsph %g, sph_viscosity_epsilon %g, sph_lattice %d, sph_wall %s, sph_reinit %s every %" PetscInt_FMT " steps\n",
+      (double)p->zeta, (double)p->epsilon, p->lattice, SphWallTypes[p->wall], SphReinitTypes[p->reinit], p->reinitevery));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  sph_viscosity_type %s, sph_artificial_alpha %g, sph_density_diffusion %s, "
+                                   "sph_density_diffusion_delta %g, sph_integrator %s\n",
+                                   SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
                                    (double)p->delta, SphIntegratorTypes[p->integrator]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_shifting %s, sph_shifting_factor %g, sph_slip %s, sph_dt_min %g s\n",
-                                   SphShiftingTypes[p->shifting], (double)p->shiftfactor, SphSlipTypes[p->slip], (double)p->dtmin));
+                                   SphShiftingTypes[p->shifting], (double)p->shiftfactor, SphSlipTypes[p->slip],
+                                   (double)p->dtmin));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
   if (p->dtfixed > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dt %g s (fixed)\n", (double)p->dtfixed));

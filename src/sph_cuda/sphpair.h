@@ -96,9 +96,9 @@ SPH_INLINE sphreal sph_xsph(sphreal mb, sphreal rhoa, sphreal rhob, sphreal W)
 }
 
 /*
-  Shifting velocity, factor of x_ab (1/s): Sun, Colagrossi, Marrone, Zhang, Comput. Methods Appl. Mech. Eng. 315 (2017), Eq. 4, as a
-  velocity: -2 A h V_max Sum V_b [1 + 0.2 (W/W(dp))^4] grad W; A = 1 there. It moves positions only: density and velocity go along,
-  so that mass and momentum are conserved exactly. w = W without norm.
+  Shifting velocity, factor of x_ab (1/s): Sun, Colagrossi, Marrone, Zhang, Comput. Methods Appl. Mech. Eng. 315 (2017), Eq. 4, as
+  a velocity: -2 A h V_max Sum V_b [1 + 0.2 (W/W(dp))^4] grad W; A = 1 there. It moves positions only: density and velocity go
+  along, so that mass and momentum are conserved exactly. w = W without norm.
 */
 SPH_INLINE sphreal sph_shift(const SphPairConst *c, sphreal Vb, sphreal w, sphreal F)
 {
@@ -107,8 +107,8 @@ SPH_INLINE sphreal sph_shift(const SphPairConst *c, sphreal Vb, sphreal w, sphre
 }
 
 /*
-  What part of the shifting velocity a marker keeps: none at a free surface, where the divergence of the position -Sum V_b r2 F falls
-  short of dim (Lee et al., J. Comput. Phys. 227 (2008)), nor in a second row of markers; all where the support is full.
+  What part of the shifting velocity a marker keeps: none at a free surface, where the divergence of the position -Sum V_b r2 F
+  falls short of dim (Lee et al., J. Comput. Phys. 227 (2008)), nor in a second row of markers; all where the support is full.
 */
 SPH_INLINE double sph_shift_keep(double div, double dim)
 {

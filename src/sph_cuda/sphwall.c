@@ -36,15 +36,15 @@ PetscReal SphWallRatio(const SphParams *par, PetscReal depth)
 /*
   SphLattice - Kernel norms and pair viscosity such that sums over the undisturbed lattice are exact.
 
-  At fixed h/dp the sums over the initial lattice miss their integrals by 0.1 to 2 %, an error that does not fall with resolution. One factor each
-  makes them exact there: sum V W = 1; -sum V F y^2 = 1, so that gradients and divergences of linear fields are exact; and Eq. 6 gives the Laplacian 1 for
-  u = y^2/2. With `lattice` off the continuous norms and mu itself are used.
+  At fixed h/dp the sums over the initial lattice miss their integrals by 0.1 to 2 %, an error that does not fall with resolution.
+  One factor each makes them exact there: sum V W = 1; -sum V F y^2 = 1, so that gradients and divergences of linear fields are
+  exact; and Eq. 6 gives the Laplacian 1 for u = y^2/2. With `lattice` off the continuous norms and mu itself are used.
 */
 void SphLattice(SphParams *par)
 {
-  const int    reach = (int)ceil(2.0 * par->h / par->dp), nz = par->dim == 3 ? reach : 0;
+  const int reach = (int)ceil(2.0 * par->h / par->dp), nz = par->dim == 3 ? reach : 0;
   const double norm = sph_norm(par->kernel, (int)par->dim, par->h), d2 = par->dp * par->dp, V = pow(par->dp, (double)par->dim);
-  double       sw = 0.0, sf = 0.0, sv = 0.0;
+  double sw = 0.0, sf = 0.0, sv = 0.0;
 
   par->wnorm = norm;
   par->fnorm = norm / (par->h * par->h);
