@@ -507,7 +507,7 @@ static PetscErrorCode TestGroups(void)
     Q[6 * 151 + 2] = NAN;
     TEST_ERROR(AncfAdvance(a, 0.101), PETSC_ERR_FP, "Beam 30, node 1"); /* 3+4+5+6+7 nodes in 5 beams: node 150 starts beam 30 */
     Q[6 * 151 + 2] = 1e200;
-    if (k < 5) TEST_ERROR(AncfAdvance(a, 0.101), PETSC_ERR_NOT_CONVERGED, "beam 30, node 1");
+    if (k < 5) TEST_ERROR(AncfAdvance(a, 0.101), PETSC_ERR_NOT_CONVERGED, "beam 30, element 0 of 2, node 1");
     PetscCall(AncfZeroLoads(a));
     for (int i = 101; i <= 120; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
     if (k < 5) {
@@ -630,6 +630,17 @@ static PetscErrorCode TestBadInput(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The length of the first step that TS takes from time 0 on; the monitor comes before that step's starts, too. */
+static PetscErrorCode FirstStep(TS ts, PetscInt n, PetscReal t, Vec u, void *ctx)
+{
+  PetscFunctionBegin;
+  (void)ts;
+  (void)n;
+  (void)u;
+  if (*(PetscReal *)ctx == 0 && t > 0) *(PetscReal *)ctx = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Failures at run time: named, and the state is the one before the call. */
 static PetscErrorCode TestFailures(void)
 {
@@ -651,7 +662,8 @@ static PetscErrorCode TestFailures(void)
   PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
   tip = e[26];
   Q[26] = 1e200; /* overflows whatever the step */
-  TEST_ERROR(AncfAdvance(a, 2e-2), PETSC_ERR_NOT_CONVERGED, "beam 0, node 4");
+  TEST_ERROR(AncfAdvance(a, 2e-2), PETSC_ERR_NOT_CONVERGED, "beam 0, element 3 of 4, node 4");
+  TEST(strstr(test_message, "at t = 0.01 s") != NULL, "'%s' does not name the time", test_message);
   PetscCall(AncfGetState(a, &t, &e, NULL, NULL));
   TEST_NEAR(t, 1e-2, 0, "time after a failure");
   TEST_NEAR(e[26], tip, 0, "tip after a failure");
@@ -663,12 +675,20 @@ static PetscErrorCode TestFailures(void)
   TEST_ERROR(AncfSolveStatic(a, 2), PETSC_ERR_NOT_CONVERGED, "supports");
   PetscCall(AncfDestroy(&a));
   s.end0 = ANCF_END_CLAMP;
-  /* Three iterations are too few for a step of 0.3 s, a third of the swing's period, but not for a small one. */
+  /* Three iterations are too few for a step of 0.3 s, a third of the swing's period, but not for a small one: the first step
+     that is taken is 0.3 s over a power of 2. */
   PetscCall(BeamCreate(&s, -9.81, "-ancf_snes_max_it 3", &a));
-  PetscCall(AncfAdvance(a, 0.3));
   {
+    PetscReal first = 0, k;
     PetscInt steps;
+    TS ts;
 
+    PetscCall(AncfGetTS(a, &ts));
+    PetscCall(TSMonitorSet(ts, FirstStep, &first, NULL));
+    PetscCall(AncfAdvance(a, 0.3));
+    k = PetscLog2Real(0.3 / first);
+    TEST(first > 0 && first < 0.2 && PetscAbsReal(k - PetscFloorReal(k + 0.5)) < 1e-6, "first step %g s: not 0.3 s in halves",
+         (double)first);
     PetscCall(AncfGetCounts(a, &steps, NULL, NULL));
     printf("one step of 0.3 s with at most 3 Newton iterations was taken as %d steps\n", (int)steps);
     TEST(steps > 1, "the step of 0.3 s was not reduced");

@@ -72,11 +72,13 @@ static PetscErrorCode AncfFail(Ancf ancf, PetscReal t0, TSConvergedReason reason
   PetscCheck(node >= 0, ancf->comm, PETSC_ERR_NOT_CONVERGED, "Beam step at t = %g s failed: %s", (double)t,
              TSConvergedReasons[reason]);
   b = AncfFindBeam(ancf, node);
+  node -= ancf->beams[b].node;
   SETERRQ(ancf->comm, PETSC_ERR_NOT_CONVERGED,
-          "Newton failed (%s) at t = %g s even with the step reduced to %g s: largest residual %g N at beam %" PetscInt_FMT
-          ", node %" PetscInt_FMT " of %" PetscInt_FMT "; use a smaller step (-ancf_substeps) or softer loads",
-          SNESConvergedReasons[why], (double)t, (double)dt, (double)size, ancf->firstbeam + b, node - ancf->beams[b].node,
-          ancf->beams[b].spec.elements + 1);
+          "Newton failed (%s) at t = %g s even with the step halved down to %g s: largest residual %g N at beam %" PetscInt_FMT
+          ", element %" PetscInt_FMT " of %" PetscInt_FMT ", node %" PetscInt_FMT
+          "; use a smaller step (-ancf_substeps) or softer loads",
+          SNESConvergedReasons[why], (double)t, (double)dt, (double)size, ancf->firstbeam + b, PetscMax(node - 1, 0),
+          ancf->beams[b].spec.elements, node);
 }
 
 PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)

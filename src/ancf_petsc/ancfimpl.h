@@ -93,6 +93,7 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 #define ANCF_DEFAULT_AXIAL 3
 #define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
+#define ANCF_MAX_HALVES 14        /* of a step that Newton's method fails in */
 #define ANCF_DEFAULT_GROUP 1000 /* nodes; 1 kB each in the vectors of TSALPHA2: fits a level-2 cache */
 
 #if defined(PETSC_UNLIMITED)

@@ -381,11 +381,12 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(TSAlpha2SetRadius(ancf->ts, ANCF_DEFAULT_RADIUS));
   PetscCall(TSSetExactFinalTime(ancf->ts, TS_EXACTFINALTIME_MATCHSTEP));
   PetscCall(TSSetMaxSteps(ancf->ts, PETSC_MAX_INT));
-  PetscCall(TSSetMaxSNESFailures(ancf->ts, ANCF_UNLIMITED)); /* a failed step is tried again with a smaller one, */
-  PetscCall(TSSetMaxStepRejections(ancf->ts, 10));           /* ten times */
+  PetscCall(TSSetMaxSNESFailures(ancf->ts, ANCF_UNLIMITED)); /* a failed step is tried again with half of it */
+  PetscCall(TSSetMaxStepRejections(ancf->ts, ANCF_MAX_HALVES));
   PetscCall(TSSetErrorIfStepFails(ancf->ts, PETSC_FALSE));
   PetscCall(TSGetAdapt(ancf->ts, &adapt));
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
+  PetscCall(TSAdaptSetScaleSolveFailed(adapt, 0.5));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESSetTolerances(snes, 1e-50, 1e-9, 1e-12, 25, 10000));
   PetscCall(SNESSetForceIteration(snes, PETSC_TRUE)); /* the floor of AncfSetNewtonFloor() must not swallow small loads */
