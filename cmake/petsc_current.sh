@@ -21,7 +21,7 @@ if [ ! -e "$prefix/lib/pkgconfig/PETSc.pc" ]; then
   unset PETSC_DIR PETSC_ARCH
   # The options that Debian's package has and that Frond needs.
   ./configure PETSC_ARCH=frond --prefix="$prefix" --with-debugging=0 --with-shared-libraries=1 --with-fc=0 --with-x=0 \
-    --with-cc=mpicc --COPTFLAGS=-O2 --with-hwloc=0 >"$folder/configure.log" 2>&1 || {
+    --with-cc=mpicc --with-cxx=mpicxx --COPTFLAGS=-O2 --CXXOPTFLAGS=-O2 --with-hwloc=0 >"$folder/configure.log" 2>&1 || {
     tail -n 40 "$folder/configure.log"
     exit 1
   }

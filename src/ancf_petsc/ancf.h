@@ -35,102 +35,199 @@ typedef struct {
   AncfEnd end0, end1;     /* boundary conditions at start and end */
 } AncfBeamSpec;
 
+/* An empty set of beams. comm: communicator of one rank: beams are not shared out among processes. ancf: the new set. */
 FROND_EXTERN PetscErrorCode AncfCreate(MPI_Comm comm, Ancf *ancf);
+/* prefix: options are then -<prefix>ancf_gravity, -<prefix>ancf_ts_type and so on; copied. */
 FROND_EXTERN PetscErrorCode AncfSetOptionsPrefix(Ancf ancf, const char prefix[]);
+/* Four elements, everything free, EA, EI, rhoA derived; the rest is invalid until set. spec: to be filled. */
 FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
-/* Sets EA, EI and rhoA of an annulus from diameter, young and density, which must be set, and its inner diameter, m. */
+/*
+  EA, EI and rhoA of an annulus from diameter, young and density, which must be set. spec: the beam. inner: inner diameter, m,
+  in [0, diameter).
+*/
 FROND_EXTERN PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner);
+/* Append a beam, before AncfSetUp(). spec: copied. beam: its number, or NULL. */
 FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
-/* Supports any node of a beam, before AncfSetUp(): ANCF_END_PIN or ANCF_END_CLAMP. */
+/*
+  Support any node, before AncfSetUp(); the ends may also be supported in the spec. beam: number. node: of the beam, 0 is its
+  start. how: ANCF_END_PIN or ANCF_END_CLAMP.
+*/
 FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
+/* Gravitational acceleration. g: 3, m/s^2, finite, default 0. Source: the paper, Eq. 24. */
 FROND_EXTERN PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3]);
+/*
+  Density of the surrounding fluid: gravity acts on rho_s A - rho A_outer, A_outer = pi d^2/4. rho: kg/m^3, >= 0; 0 (default):
+  no buoyancy.
+*/
 FROND_EXTERN PetscErrorCode AncfSetFluidDensity(Ancf ancf, PetscReal rho);
+/*
+  TS steps in each AncfAdvance(); with an adaptive TS, of the first step. ratio: 1 to 1000, default 1. Source: the paper,
+  Sect. 3.
+*/
 FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
-/* Strain measure, ANCF_STRAIN_PAPER by default. Before AncfSetUp(). */
+/*
+  Strain measure, before AncfSetUp(). strain: ANCF_STRAIN_PAPER (default) or ANCF_STRAIN_ENGINEERING. Source: the paper, Eqs.
+  26 and 27.
+*/
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
+/* Gauss points per element, before AncfSetUp(). axial: for the axial energy, 1 to 8. bending: for the bending energy, 2 to 8. */
 FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
+/*
+  Mass-proportional (Rayleigh) damping C = damping M, before AncfSetUp(): a mode of frequency w (rad/s) has the damping ratio
+  damping/(2 w). damping: 1/s, >= 0, default 0.
+*/
 FROND_EXTERN PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping);
+/*
+  Beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in cache; before
+  AncfSetUp(). nodes: >= 1, default 1000.
+*/
 FROND_EXTERN PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes);
 /* Read -ancf_... and the options of TS, SNES, KSP and PC under that prefix. */
 FROND_EXTERN PetscErrorCode AncfSetFromOptions(Ancf ancf);
-/* Check the beams, assemble the mass matrix, make the solver; needed before all that follows. Errors: no beams, a TS type that
-   cannot integrate them. */
+/* Check the beams, assemble the mass matrix (Eq. 22), make the solver; needed before all that follows. */
 FROND_EXTERN PetscErrorCode AncfSetUp(Ancf ancf);
-/* Print beams and solver; viewer NULL: standard output. */
+/* Print beams and solver. viewer: an ASCII viewer; NULL: standard output. */
 FROND_EXTERN PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer);
-/* Free everything; *ancf becomes NULL. */
+/* Free everything. ancf: the beams; becomes NULL. */
 FROND_EXTERN PetscErrorCode AncfDestroy(Ancf *ancf);
 
+/* ts: the integrator (the first group's, see AncfSetGroupNodes()), for choices without an option of ours; borrowed. */
 FROND_EXTERN PetscErrorCode AncfGetTS(Ancf ancf, TS *ts);
-/* Number of beams. */
+/* n: number of beams. */
 FROND_EXTERN PetscErrorCode AncfGetNumBeams(Ancf ancf, PetscInt *n);
-/* Number of nodes of all beams together. */
+/* n: number of nodes of all beams together. */
 FROND_EXTERN PetscErrorCode AncfGetNumNodes(Ancf ancf, PetscInt *n);
+/*
+  Each output may be NULL. beam: number. spec: with EA, EI and rhoA resolved. firstnode: where its nodes begin in the node
+  arrays. elementlength: m.
+*/
 FROND_EXTERN PetscErrorCode AncfGetBeam(Ancf ancf, PetscInt beam, AncfBeamSpec *spec, PetscInt *firstnode,
                                         PetscReal *elementlength);
 
-/* State at the current time: positions, velocities, accelerations of the nodal coordinates; borrowed, nodes x 6. */
+/*
+  State at the current time; arrays borrowed until the next call that changes it; each output may be NULL. t: s. e: nodes x 6,
+  r (m) and r,x (-). edot: nodes x 6, m/s and 1/s. eddot: nodes x 6, m/s^2 and 1/s^2.
+*/
 FROND_EXTERN PetscErrorCode AncfGetState(Ancf ancf, PetscReal *t, const PetscReal **e, const PetscReal **edot,
                                          const PetscReal **eddot);
+/*
+  Replace the state; multistep history is discarded. Supported coordinates keep their new values from now on; their velocities
+  must be zero unless the node moves. t: s. e: nodes x 6. edot: nodes x 6.
+*/
 FROND_EXTERN PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const PetscReal *edot);
 
-/* Generalised applied forces Q^a (nodes x 6), held constant over the next AncfAdvance(). Writable; ask again before each step. */
+/* Set the generalised applied forces Q^a to zero. */
 FROND_EXTERN PetscErrorCode AncfZeroLoads(Ancf ancf);
-/* Q^a to write to, nodes x 6; borrowed. */
+/*
+  Q^a, held constant over the next AncfAdvance(); ask again before each step. Q: nodes x 6, N and N m, to write to; borrowed.
+  Source: the paper, Eq. 23.
+*/
 FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
-/* Loads at the end of the next AncfAdvance(): Q^a is then linear in time from AncfGetLoads() to these in that
-   call, and constant at these afterwards. Returned as a copy of the loads at the start. */
+/*
+  Loads at the end of the next AncfAdvance(): Q^a is then linear in time from AncfGetLoads() to these in that call, and
+  constant at these afterwards. Q: nodes x 6, N and N m, a copy of the loads at the start, to write to; borrowed.
+*/
 FROND_EXTERN PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q);
 
-/* Permanent loads, in addition to Q^a; see ancfloads.c. s in [0,1]: fraction of the length; node: 0 is the beam's start. */
+/*
+  Add a permanent force of fixed direction, Q = S^T F. beam: number. s: fraction of the length, in [0, 1]. F: 3, N. Source:
+  the paper, Eq. 23.
+*/
 FROND_EXTERN PetscErrorCode AncfAddPointLoad(Ancf ancf, PetscInt beam, PetscReal s, const PetscReal F[3]);
+/*
+  Add a permanent uniform load of fixed direction over a whole beam. beam: number. q: 3, N per m of rest length. Source: the
+  paper, Eq. 24.
+*/
 FROND_EXTERN PetscErrorCode AncfAddLineLoad(Ancf ancf, PetscInt beam, const PetscReal q[3]);
+/*
+  Set a moment of fixed direction at a node, until it is set again; it works on the rotation of the tangent, so a component
+  along the tangent has no effect. beam: number. node: of the beam, 0 is its start. M: 3, N m.
+*/
 FROND_EXTERN PetscErrorCode AncfSetMoment(Ancf ancf, PetscInt beam, PetscInt node, const PetscReal M[3]);
+/* Remove all point loads, line loads and moments. */
 FROND_EXTERN PetscErrorCode AncfClearLoads(Ancf ancf);
-/* Centreline (m), axial force (N), curvature vector (1/m) and bending moment (N m) at the fraction s of a beam's length. */
+/*
+  Centreline and section forces; each output may be NULL. beam: number. s: fraction of the length, in [0, 1]. r: 3, m. N:
+  axial force EA eps, N. kappa: 3, curvature vector r' x r''/|r'|^3 (engineering strains: over |r'|^2), 1/m. M: 3, bending
+  moment EI kappa, N m. Source: the paper, Eqs. 26 and 27.
+*/
 FROND_EXTERN PetscErrorCode AncfGetSection(Ancf ancf, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal *N,
                                            PetscReal kappa[3], PetscReal M[3]);
 
-/* Motion of a supported node from now on, e + v tau + a tau^2/2, and the generalised force that the support exerts; ancfmotion.c.
- */
+/*
+  Motion of a supported node from now on, e + v tau + a tau^2/2; coordinates that are not supported are ignored. beam: number.
+  node: of the beam. e: 6, m and -. v: 6, m/s and 1/s. a: 6, m/s^2 and 1/s^2.
+*/
 FROND_EXTERN PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const PetscReal e[6], const PetscReal v[6],
                                               const PetscReal a[6]);
+/*
+  Generalised force of a support on the beam. beam: number. node: of the beam. f: 6: force, N, and the part work-conjugate to
+  the gradient, N m; the moment of a clamp about its node is r' x f[3..5].
+*/
 FROND_EXTERN PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, PetscReal f[6]);
 
-/* Iterated coupling: AncfRestoreState() goes back to the time of AncfSaveState() as often as wanted, with the history of the
-   integrator for one-step methods and alpha2 (a multistep method restarts). Loads are left alone. */
+/*
+  Keep the state for AncfRestoreState(): with the history of the integrator for one-step methods and alpha2 (a multistep
+  method restarts). Loads are left alone.
+*/
 FROND_EXTERN PetscErrorCode AncfSaveState(Ancf ancf);
-/* Back to the time of AncfSaveState(). Errors: PETSC_ERR_ARG_WRONGSTATE before it. */
+/* Back to the time of AncfSaveState(), as often as wanted. */
 FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
-/* Checkpoints: the acceleration (nodes x 6) that alpha2 carries from step to step, to be set after AncfSetState(); *A is NULL
-   for other types. Without it alpha2 starts from the acceleration of the equations of motion. */
+/*
+  For checkpoints: the acceleration that alpha2 carries from step to step. Without it alpha2 starts from the acceleration of
+  the equations of motion. A: nodes x 6, borrowed; NULL for other types.
+*/
 FROND_EXTERN PetscErrorCode AncfGetHistory(Ancf ancf, const PetscReal **A);
-/* Set what AncfGetHistory() gave; NULL or another type than alpha2: nothing is done. */
+/* Set what AncfGetHistory() gave, after AncfSetState(). A: nodes x 6; NULL, or another type than alpha2: nothing is done. */
 FROND_EXTERN PetscErrorCode AncfSetHistory(Ancf ancf, const PetscReal *A);
 
-/* Integrate from the current time to t with `substeps` TS steps (or adaptively). */
+/*
+  Integrate from the current time with `substeps` TS steps (or adaptively) under the present loads; after an error the state
+  is that before the call. t: s, above the current time. Source: the paper, Eqs. 18-30.
+*/
 FROND_EXTERN PetscErrorCode AncfAdvance(Ancf ancf, PetscReal t);
 
-/* Static equilibrium under the present loads and gravity, from the present shape; velocities become zero. The loads are
-   applied in equal steps, each halved when Newton fails. PETSC_ERR_NOT_CONVERGED when no equilibrium is found, as for
-   beams without enough supports. Options: -ancf_static_snes_..., -ancf_static_ksp_.... */
+/*
+  Static equilibrium under the present loads and gravity, from the present shape; velocities become zero.
+  PETSC_ERR_NOT_CONVERGED when there is none, as for beams without enough supports. Options: -ancf_static_snes_...,
+  -ancf_static_ksp_.... loadsteps: the loads are applied in this many equal steps, >= 1, each halved when Newton fails.
+*/
 FROND_EXTERN PetscErrorCode AncfSolveStatic(Ancf ancf, PetscInt loadsteps);
 
-/* Energies, J: kinetic, elastic (axial + bending), potential (of gravity less buoyancy, -sum (rho_s A - rho A_outer) g.r, and of
-   permanent point and line loads). */
+/*
+  Each output may be NULL. kinetic: J. elastic: axial and bending, J. potential: of gravity less buoyancy, -sum (rho_s A - rho
+  A_outer) g.r, and of permanent point and line loads, J.
+*/
 FROND_EXTERN PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, PetscReal *potential);
-/* Total linear momentum (kg m/s) and angular momentum about the origin (kg m^2/s); either may be NULL. */
+/*
+  Each output may be NULL. p: 3, linear momentum, kg m/s. L: 3, angular momentum about the origin, integral of rho_s A r x
+  rdot, kg m^2/s.
+*/
 FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3]);
-/* Force of the supports (clamped and pinned ends) on the beams, and of gravity less buoyancy, N. */
+/* f: 3, force of all supports on the beams, N: the residual of the equations of motion over supported positions. */
 FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
-/* Gravity less buoyancy on all beams, N. */
+/* f: 3, gravity less buoyancy on all beams, N. */
 FROND_EXTERN PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3]);
-/* Counters since AncfSetUp(): TS steps, Newton iterations, linear iterations; the largest over the groups of beams. */
+/*
+  Counters since AncfSetUp(), the largest over the groups of beams; each output may be NULL. steps: TS steps. newton: Newton
+  iterations. linear: linear iterations.
+*/
 FROND_EXTERN PetscErrorCode AncfGetCounts(Ancf ancf, PetscInt *steps, PetscInt *newton, PetscInt *linear);
 
-/* Shape functions S1..S4 of Eq. 19, their first and second x-derivatives at xi in [0,1] of an element of length l (m). */
+/*
+  Shape functions. xi: place in the element, in [0, 1]. l: length of the element, m. S: 4, S1 and S3 (-), S2 and S4 (m).
+  Source: the paper, Eq. 19.
+*/
 FROND_EXTERN void AncfShape(PetscReal xi, PetscReal l, PetscReal S[4]);
+/*
+  Their first x-derivatives. xi: place in the element, in [0, 1]. l: length of the element, m. Sx: 4, 1/m and -. Source: the
+  paper, Eq. 19.
+*/
 FROND_EXTERN void AncfShapeX(PetscReal xi, PetscReal l, PetscReal Sx[4]);
+/*
+  Their second x-derivatives. xi: place in the element, in [0, 1]. l: length of the element, m. Sxx: 4, 1/m^2 and 1/m. Source:
+  the paper, Eq. 19.
+*/
 FROND_EXTERN void AncfShapeXX(PetscReal xi, PetscReal l, PetscReal Sxx[4]);
 
 #endif

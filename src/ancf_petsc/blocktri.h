@@ -39,7 +39,7 @@ typedef struct {
 
 /* Make PCBLOCKTRI known to PETSc; may be called again. libfrond does it when loaded with -dll_append. */
 FROND_EXTERN PetscErrorCode PCBlockTriRegister(void);
-/* The source is kept by reference and must outlive the matrix. */
+/* Let a matrix give its blocks on the fly. P: the matrix. source: kept by reference, must outlive the matrix. */
 FROND_EXTERN PetscErrorCode MatBlockTriSetSource(Mat P, const BlockTriSource *source);
 
 #endif

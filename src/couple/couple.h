@@ -57,65 +57,95 @@ typedef struct {
   PetscErrorCode (*load)(CoupleSurface, const PetscReal *state); /* optional */
 } CoupleSurfaceOps;
 
+/*
+  Wrap a structure for the coupling. comm: communicator of the fluid. name: copied; errors and output name the surface by it.
+  ops: copied; all but those called optional must be given. ctx: the structure's own, for ops. surface: the new surface.
+*/
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const CoupleSurfaceOps *ops, void *ctx,
                                                 CoupleSurface *surface);
-/* The ctx given to CoupleSurfaceCreate(); pass the address of a pointer. */
+/* ctx: address of a pointer that becomes the ctx given to CoupleSurfaceCreate(). */
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetContext(CoupleSurface surface, void *ctx);
-/* The surface's name; borrowed. */
+/* name: the surface's name; borrowed. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetName(CoupleSurface surface, const char **name);
-/* A copy of the surface's operations, to drive it outside a Couple. */
+/* ops: a copy of the surface's operations, to drive it outside a Couple. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceGetOps(CoupleSurface surface, CoupleSurfaceOps *ops);
-/* A held surface (wall, fixed body) takes up any force: the balance counts it as an impulse of walls. */
+/* A held surface (wall, fixed body) takes up any force: the balance counts it as an impulse of walls. held: default no. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceSetHeld(CoupleSurface surface, PetscBool held);
-/* Give a reference back; the last one frees the surface. *surface becomes NULL. */
+/* Give a reference back; the last one frees the surface. surface: becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceDestroy(CoupleSurface *surface);
 
-/* Beam `beam` of ancf, marked by disks of BCE markers dp apart (lines across the thickness in 2D). */
+/*
+  A beam, marked by disks of BCE markers (lines across the thickness in 2D). ancf: the beams, set up; kept, not owned. beam:
+  number. dim: 2 or 3. dp: distance of the markers, m; a diameter below it is refused. depthmax: how deep below the surface,
+  m. surface: the new surface. Source: the paper, Sect. 2.4, Fig. 2b.
+*/
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, PetscInt dim, PetscReal dp, PetscReal depthmax,
                                                     CoupleSurface *surface);
-/* Body `body` of rigid. */
+/*
+  A rigid body, filled with BCE markers. rigid: the bodies, set up; kept, not owned. body: number. dim: 2 or 3. dp: distance
+  of the markers, m. depthmax: how deep below the surface, m. surface: the new surface. Source: the paper, Sect. 2.4, Fig. 2a.
+*/
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax,
                                                      CoupleSurface *surface);
-/* Markers moving together with a constant velocity (m/s), at rest for zero. Copies the arrays. */
+/*
+  Markers moving together; the arrays are copied. comm: communicator of the fluid. name: copied. n: number of markers. x: n x
+  3, m. volume: n, m^3 (2D: m^2). depth: n, m. velocity: 3, m/s, constant; 0: at rest. surface: the new surface.
+*/
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscInt n, const PetscReal *x,
                                                     const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3],
                                                     CoupleSurface *surface);
 
-/* An empty coupling. Then: CoupleSetSph(), CoupleAddSurface(), CoupleSetUp(), CoupleStep(). */
+/*
+  An empty coupling. Then: CoupleSetSph(), CoupleAddSurface(), CoupleSetUp(), CoupleStep(). comm: communicator of the fluid.
+  couple: the new coupling.
+*/
 FROND_EXTERN PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple);
+/* The fluid, whose markers are added before CoupleSetUp(). sph: kept, not owned. */
 FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
-/* The couple keeps a reference of its own: destroy yours as well. */
+/* Append a structure, before CoupleSetUp(). surface: the couple keeps a reference of its own; destroy yours as well. */
 FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
-/* Upper bound on the step, s; PETSC_DECIDE for none. */
+/* Upper bound on the step. dtmax: s, > 0; PETSC_DECIDE (default) for none. */
 FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax);
-/* Strong coupling: at most n iterations per step until the forces agree to a relative tolerance; 1 is the staggered step. */
+/*
+  Strong coupling: iterations per step until the forces agree. n: at most so many, >= 1; 1 (default) is the staggered step.
+  tolerance: of the forces, relative (-), > 0. relaxation: the first factor of each step (-), in (0, 1].
+*/
 FROND_EXTERN PetscErrorCode CoupleSetIterations(Couple couple, PetscInt n, PetscReal tolerance, PetscReal relaxation);
-/* Iterations made since set-up, and steps that missed the tolerance; either may be NULL. */
+/* Each output may be NULL. iterations: made since set-up. unconverged: steps that missed the tolerance. */
 FROND_EXTERN PetscErrorCode CoupleGetIterations(Couple couple, PetscInt *iterations, PetscInt *unconverged);
 /* Read -couple_.... */
 FROND_EXTERN PetscErrorCode CoupleSetFromOptions(Couple couple);
-/* Gives every surface's markers to the fluid and sets the fluid up. Add the fluid markers before. */
+/* Give every surface's markers to the fluid and set the fluid up. Add the fluid markers before. */
 FROND_EXTERN PetscErrorCode CoupleSetUp(Couple couple);
-/* Print the coupling and its surfaces. */
+/* Print the coupling and its surfaces. viewer: an ASCII viewer of PETSc. */
 FROND_EXTERN PetscErrorCode CoupleView(Couple couple, PetscViewer viewer);
-/* Free the coupling and its references of surfaces; the fluid is the caller's. *couple becomes NULL. */
+/* Free the coupling and its references of surfaces; the fluid is the caller's. couple: becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleDestroy(Couple *couple);
 
-/* One step of the coupled system, not past tmax; dt (s) is the step taken. */
+/*
+  One step of the coupled system. PETSC_ERR_FP on a value that is not finite, PETSC_ERR_NOT_CONVERGED when a structure's
+  solver fails. tmax: not past this time, s. dt: the step taken, s, or NULL. Source: the paper, Sect. 2.4; the scheme is
+  described in couple.c.
+*/
 FROND_EXTERN PetscErrorCode CoupleStep(Couple couple, PetscReal tmax, PetscReal *dt);
-/* Time (s) and number of steps; either may be NULL. */
+/* Each output may be NULL. t: time, s. step: number of steps. */
 FROND_EXTERN PetscErrorCode CoupleGetTime(Couple couple, PetscReal *t, PetscInt *step);
-/* Number of surfaces. */
+/* n: number of surfaces. */
 FROND_EXTERN PetscErrorCode CoupleGetNumSurfaces(Couple couple, PetscInt *n);
-/* Surface i (borrowed) and the boundary group of its markers in the fluid; either may be NULL. */
+/*
+  Each output may be NULL. i: number of the surface, from 0. surface: borrowed. group: boundary group of its markers in the
+  fluid.
+*/
 FROND_EXTERN PetscErrorCode CoupleGetSurface(Couple couple, PetscInt i, CoupleSurface *surface, PetscInt *group);
-/* Audit of the last step's transfer on surface i. */
+/* i: number of the surface. audit: of the last step's transfer. */
 FROND_EXTERN PetscErrorCode CoupleGetAudit(Couple couple, PetscInt i, CoupleAudit *audit);
 
-/* Steps to time t (s), which must lie after the current one. */
+/* Steps up to a time, as CoupleStep(). t: s, after the current one. */
 FROND_EXTERN PetscErrorCode CoupleAdvance(Couple couple, PetscReal t);
-/* Markers of surface i: how many (n), positions now (m), velocities now (m/s), fluid forces of the last step (N), n x 3 each;
-   borrowed until the next step. Any may be NULL. */
+/*
+  Borrowed until the next step; each output may be NULL. i: number of the surface. n: its markers. x: n x 3, positions now, m.
+  v: n x 3, velocities now, m/s. f: n x 3, fluid forces of the last step, N.
+*/
 FROND_EXTERN PetscErrorCode CoupleGetMarkers(Couple couple, PetscInt i, PetscInt *n, const PetscReal **x, const PetscReal **v,
                                              const PetscReal **f);
 
@@ -126,11 +156,18 @@ FROND_EXTERN PetscErrorCode CoupleGetMarkers(Couple couple, PetscInt i, PetscInt
   multistep method of PETSc begins anew). Errors: PETSC_ERR_SUP when a surface cannot save its state.
 */
 typedef struct _p_CoupleState *CoupleState;
-/* Keep the state now in *state, which is made when NULL. */
+/*
+  Keep fluid and structures as they are between two steps; several states may be kept. Integrators with a memory start from
+  what is saved, a change at round-off (a multistep method of PETSc begins anew). PETSC_ERR_SUP when a surface cannot save its
+  state. state: made when NULL, else used again.
+*/
 FROND_EXTERN PetscErrorCode CoupleSaveState(Couple couple, CoupleState *state);
-/* Back to where CoupleSaveState() was called. */
+/*
+  Back to where CoupleSaveState() was called, as often as wanted; the run goes on with the bits that it went on with after
+  saving. state: saved.
+*/
 FROND_EXTERN PetscErrorCode CoupleRestoreState(Couple couple, CoupleState state);
-/* Free a saved state; *state becomes NULL. */
+/* Free a saved state. state: becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleStateDestroy(CoupleState *state);
 
 /*
@@ -142,6 +179,10 @@ typedef struct {
   PetscReal body[3], support[3], wall[3]; /* impulses since set-up, kg m/s */
   PetscReal residual[3], scale;           /* residual, and the largest term it is a difference of */
 } CoupleBalance;
+/*
+  Momentum now, impulses since set-up and the residual between them: round-off for a system without supports (of the pair
+  arithmetic's precision); with supports it carries the second-order error of integrating their force. balance: to be filled.
+*/
 FROND_EXTERN PetscErrorCode CoupleGetBalance(Couple couple, CoupleBalance *balance);
 
 #endif

@@ -52,14 +52,16 @@ typedef struct {
 } CoupleHostOps;
 
 /*
-  Surface of a host's structure at its present state; ctx is the host's and goes to every operation.
-  Errors: node or section numbers out of range, shape functions that do not add up, offsets without slopes, volumes <= 0.
+  Surface of a host's structure at its present state. Refused: node or section numbers out of range, shape functions that do
+  not add up, offsets without slopes, volumes <= 0. comm: communicator of the fluid. name: copied. spec: how the markers hang
+  on the nodes; copied. ops: what the host does; copied. ctx: the host's, goes to every operation. surface: the new surface.
+  Source: the paper, Eq. 23 and Sect. 2.4.
 */
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreateHost(MPI_Comm comm, const char name[], const CoupleHostSpec *spec,
                                                     const CoupleHostOps *ops, void *ctx, CoupleSurface *surface);
-/* The generalised forces of the last transfer, nnodes x 3, N; borrowed. */
+/* Q: the generalised forces of the last transfer, nnodes x 3, N; borrowed. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceHostGetLoads(CoupleSurface surface, const PetscReal **Q);
-/* How the markers of a host's or of a beam's surface hang on its nodes; arrays borrowed. */
+/* spec: how the markers of a host's or of a beam's surface hang on its nodes; arrays borrowed. */
 FROND_EXTERN PetscErrorCode CoupleSurfaceHostGetSpec(CoupleSurface surface, CoupleHostSpec *spec);
 
 #endif

@@ -11,28 +11,34 @@
 typedef struct _p_FrondScene *FrondScene;
 
 /*
-  Read the scene in `file` (as `frond run` does) with n options given as pairs of strings, "sph_dp", "0.02", ..., which win over
-  the file; make all objects and set them up. PETSc's options database is left as it was. Errors: those of `frond check`.
+  Read a scene as `frond run` does, make all objects and set them up; refuses what `frond check` refuses. PETSc's options
+  database is left as it was. file: path of the YAML file. n: number of options. options: 2 n strings, name and value,
+  "sph_dp", "0.02", ..., which win over the file. scene: the new scene.
 */
 FROND_EXTERN PetscErrorCode FrondSceneLoad(const char file[], PetscInt n, const char *const options[], FrondScene *scene);
-/* Free the scene and its objects; *scene becomes NULL. */
+/* Free the scene and its objects. scene: becomes NULL. */
 FROND_EXTERN PetscErrorCode FrondSceneDestroy(FrondScene *scene);
-/* The objects of the scene, NULL those it has not; borrowed. Any may be NULL. */
+/*
+  Borrowed objects, NULL for those that the scene has not; each output may be NULL. couple: the coupling. sph: the fluid.
+  ancf: the beams. rigid: the rigid bodies.
+*/
 FROND_EXTERN PetscErrorCode FrondSceneGetObjects(FrondScene scene, Couple *couple, Sph *sph, Ancf *ancf, Rigid *rigid);
-/* Time (s) and number of steps now, and the time at which the scene ends (time_end). Any may be NULL. */
+/* Each output may be NULL. t: time, s. step: number of steps. tend: time at which the scene ends (time_end), s. */
 FROND_EXTERN PetscErrorCode FrondSceneGetTime(FrondScene scene, PetscReal *t, PetscInt *step, PetscReal *tend);
-/* One step, not past tmax (s); dt (s), or NULL, is the step taken. Errors: PETSC_ERR_FP, PETSC_ERR_NOT_CONVERGED. */
+/*
+  One step. PETSC_ERR_FP on a value that is not finite, PETSC_ERR_NOT_CONVERGED when a solver fails. tmax: not past this time,
+  s. dt: the step taken, s, or NULL.
+*/
 FROND_EXTERN PetscErrorCode FrondSceneStep(FrondScene scene, PetscReal tmax, PetscReal *dt);
-/* Name of beam or body i as the scene has it; borrowed. */
+/* i: number of the beam, from 0. name: as the scene has it; borrowed. */
 FROND_EXTERN PetscErrorCode FrondSceneGetBeamName(FrondScene scene, PetscInt i, const char **name);
-/* The same for rigid body i. */
+/* i: number of the body, from 0. name: as the scene has it; borrowed. */
 FROND_EXTERN PetscErrorCode FrondSceneGetBodyName(FrondScene scene, PetscInt i, const char **name);
-/* How many surfaces the coupling has (0 without fluid), and name of the i-th, its number being that of CoupleGetSurface();
- * borrowed. */
+/* n: how many surfaces the coupling has; 0 without fluid. */
 FROND_EXTERN PetscErrorCode FrondSceneGetNumSurfaces(FrondScene scene, PetscInt *n);
-/* Name of surface i, which is also its number in CoupleGetSurface(); borrowed. */
+/* i: number of the surface, as in CoupleGetSurface(). name: borrowed. */
 FROND_EXTERN PetscErrorCode FrondSceneGetSurfaceName(FrondScene scene, PetscInt i, const char **name);
-/* Bytes of PetscInt and PetscReal in this build, for callers from other languages. */
+/* Bytes of PetscInt and PetscReal in this build, for callers from other languages. integer: of PetscInt. real: of PetscReal. */
 FROND_EXTERN void FrondGetSizes(int *integer, int *real);
 
 #endif

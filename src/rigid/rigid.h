@@ -44,85 +44,139 @@ typedef struct {
 } RigidBodySpec;
 
 /*
-  Closed surface from an STL file (text or binary), coordinates times scale giving metres; or from nv vertices x (nv x 3, m)
-  and nf facets (nf x 3 vertex numbers, counter-clockwise from outside). Refused, naming facet or edge: surfaces that are
-  open or not consistently oriented, facets without area. Not found: surfaces that cut themselves. The body frame is that
-  of the principal axes; RigidGeometryGetPlacement() tells where its origin lies and how it is turned in the mesh's own
-  frame, in which RigidBodySpec.axisangle acts; RigidBodySpec.position is where the centre of mass goes.
+  Closed surface from an STL file, text or binary. Refused, naming facet or edge: surfaces that are open or not consistently
+  oriented, facets without area. Not found: surfaces that cut themselves. The body frame is that of the principal axes;
+  RigidGeometryGetPlacement() tells where its origin lies and how it is turned in the mesh's own frame, in which
+  RigidBodySpec.axisangle acts; RigidBodySpec.position is where the centre of mass goes. comm: communicator of the errors.
+  filename: path. scale: > 0; coordinates times it are metres. geometry: the new geometry.
 */
 FROND_EXTERN PetscErrorCode RigidGeometryCreateSTL(MPI_Comm comm, const char filename[], PetscReal scale,
                                                    RigidGeometry *geometry);
-/* The same from nv vertices (nv x 3, m) and nf facets (nf x 3). */
+/*
+  The same from arrays, copied. comm: communicator of the errors. nv: number of vertices. x: nv x 3, m. nf: number of facets.
+  facets: nf x 3 vertex numbers, counter-clockwise from outside. geometry: the new geometry.
+*/
 FROND_EXTERN PetscErrorCode RigidGeometryCreateMesh(MPI_Comm comm, PetscInt nv, const PetscReal x[], PetscInt nf,
                                                     const PetscInt facets[], RigidGeometry *geometry);
 /*
-  Rigid union of n shapes (no mesh, no composite) at their position and axisangle, each of its own density; they may touch
-  but not overlap (refused, naming both). The body's density becomes the mean one. Where parts touch, the depth below the
-  surface is that in the deepest part.
+  Rigid union of shapes (no mesh, no composite) at their position and axisangle, each of its own density; they may touch but
+  not overlap (refused, naming both). The body's density becomes the mean one. Where parts touch, the depth below the surface
+  is that in the deepest part. comm: communicator of the errors. dim: 2 or 3. n: number of parts, >= 1. parts: n specs,
+  copied. geometry: the new geometry.
 */
 FROND_EXTERN PetscErrorCode RigidGeometryCreateComposite(MPI_Comm comm, PetscInt dim, PetscInt n, const RigidBodySpec parts[],
                                                          RigidGeometry *geometry);
-/* Volume (m^3; m^2 in 2D), centre of mass (m) and orientation of the body frame in the frame of the mesh or the parts; each
-   may be NULL. */
+/*
+  In the frame of the mesh or the parts; each output may be NULL. geometry: mesh or composite. volume: m^3 (2D: m^2). center:
+  3, centre of mass, m. q: 4, orientation of the body frame (-).
+*/
 FROND_EXTERN PetscErrorCode RigidGeometryGetPlacement(RigidGeometry geometry, PetscReal *volume, PetscReal center[3],
                                                       PetscReal q[4]);
-/* Give a reference back; *geometry becomes NULL. */
+/* Give a reference back. geometry: becomes NULL. */
 FROND_EXTERN PetscErrorCode RigidGeometryDestroy(RigidGeometry *geometry);
 
+/*
+  No bodies, no gravity, dim = 3, t = 0. Every rank holds every body and must make the same calls. comm: communicator. rigid:
+  the new object.
+*/
 FROND_EXTERN PetscErrorCode RigidCreate(MPI_Comm comm, Rigid *rigid);
+/* prefix: options are then -<prefix>rigid_gravity and so on; copied. */
 FROND_EXTERN PetscErrorCode RigidSetOptionsPrefix(Rigid rigid, const char prefix[]);
-/* dim = 2: unit depth, planar motion, shapes cut at z = 0; call it before RigidAddBody(). */
+/* Before RigidAddBody(). dim: 3 (default), or 2: unit depth, planar motion, shapes cut at z = 0. */
 FROND_EXTERN PetscErrorCode RigidSetDimension(Rigid rigid, PetscInt dim);
+/*
+  A free sphere of water's density at rest in the origin, without a radius; mass and inertia from the shape; no locks. spec:
+  to be filled.
+*/
 FROND_EXTERN PetscErrorCode RigidBodySpecInit(RigidBodySpec *spec);
+/*
+  Append a body, before RigidSetUp(); errors name the body, the field, its value and the rule. spec: copied. body: its number,
+  or NULL.
+*/
 FROND_EXTERN PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec, PetscInt *body);
+/* Gravitational acceleration. g: 3, space frame, m/s^2, finite, default 0. */
 FROND_EXTERN PetscErrorCode RigidSetGravity(Rigid rigid, const PetscReal g[3]);
+/* For fluids whose own hydrostatic pressure is left out: bodies weigh (m - rho V) g. rho: kg/m^3, >= 0; 0 (default): m g. */
 FROND_EXTERN PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho);
-/* Read -rigid_.... */
+/* Read -rigid_... (with the prefix). */
 FROND_EXTERN PetscErrorCode RigidSetFromOptions(Rigid rigid);
+/* Mass properties and initial state; after it the state functions may be called and bodies no longer added. */
 FROND_EXTERN PetscErrorCode RigidSetUp(Rigid rigid);
-/* Print the bodies; viewer NULL: standard output. */
+/* Print the bodies. viewer: an ASCII viewer; NULL: standard output. */
 FROND_EXTERN PetscErrorCode RigidView(Rigid rigid, PetscViewer viewer);
-/* Free everything; *rigid becomes NULL. */
+/* Free everything. rigid: becomes NULL. */
 FROND_EXTERN PetscErrorCode RigidDestroy(Rigid *rigid);
 
-/* Number of bodies. */
+/* n: number of bodies. */
 FROND_EXTERN PetscErrorCode RigidGetNumBodies(Rigid rigid, PetscInt *n);
+/* body: number. spec: the fields as given to RigidAddBody(); mass and inertia as used once RigidSetUp() was called. */
 FROND_EXTERN PetscErrorCode RigidGetBody(Rigid rigid, PetscInt body, RigidBodySpec *spec);
-/* X (m), q (-), V (m/s), omega in the space frame (rad/s); each may be NULL. */
+/*
+  Each output may be NULL. body: number. X: 3, centre of mass, m. q: 4, quaternion (-). V: 3, m/s. omega: 3, angular velocity,
+  space frame, rad/s.
+*/
 FROND_EXTERN PetscErrorCode RigidGetState(Rigid rigid, PetscInt body, PetscReal X[3], PetscReal q[4], PetscReal V[3],
                                           PetscReal omega[3]);
+/*
+  NULL leaves a part as it is (for omega: keeps the angular velocity). Locked directions of V and omega are set to 0. body:
+  number. X: 3, m. q: 4, any length > 0. V: 3, m/s. omega: 3, space frame, rad/s.
+*/
 FROND_EXTERN PetscErrorCode RigidSetState(Rigid rigid, PetscInt body, const PetscReal X[3], const PetscReal q[4],
                                           const PetscReal V[3], const PetscReal omega[3]);
-/* Time of the state, s (0 at the start). */
+/* t: time of the state, s (0 at the start). */
 FROND_EXTERN PetscErrorCode RigidSetTime(Rigid rigid, PetscReal t);
-/* Time of the state, s. */
+/* t: time of the state, s. */
 FROND_EXTERN PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t);
 /* The integrator's own variables, RigidGetPackSize() reals, for restarts that go on bit for bit. */
 #define RIGID_PACK_SIZE 28      /* for each body */
 #define RIGID_JOINT_PACK_SIZE 5 /* for each joint, after the bodies */
-/* How many reals RigidPack() writes. */
+/* n: how many reals RigidPack() writes: RIGID_PACK_SIZE a body and RIGID_JOINT_PACK_SIZE a joint. */
 FROND_EXTERN PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n);
+/*
+  The integrator's own variables, for restarts that go on bit for bit; the time is not among them, see RigidGetTime(). state:
+  RigidGetPackSize() reals, written.
+*/
 FROND_EXTERN PetscErrorCode RigidPack(Rigid rigid, PetscReal state[]);
-/* Back to what RigidPack() wrote. */
+/* Back to what RigidPack() wrote. state: RigidGetPackSize() reals. */
 FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
-/* Linear and angular acceleration (space frame), m/s^2, rad/s^2, from all wrenches of the last step: applied, weight,
-   short-range and joints; of a prescribed body, the slope of its table. */
+/*
+  From all wrenches of the last step: applied, weight, short-range and joints (before the first one, from the loads collected
+  so far); of a prescribed body, the slope of its table. Each output may be NULL. body: number. A: 3, m/s^2. alpha: 3, space
+  frame, rad/s^2.
+*/
 FROND_EXTERN PetscErrorCode RigidGetAcceleration(Rigid rigid, PetscInt body, PetscReal A[3], PetscReal alpha[3]);
-/* Rotation matrix, row major, space = R body. */
+/* q: 4, unit quaternion. R: 9, row major, space = R body. Source: the paper, Eq. 17. */
 FROND_EXTERN void RigidRotationMatrix(const PetscReal q[4], PetscReal R[9]);
 
 /*
-  A prescribed body's velocity (n x 3, m/s) and angular velocity (n x 3, space frame, rad/s; NULL for none) at n times (s,
-  increasing): linear between them, constant before and after. Replaces the constants of its spec.
+  Velocities of a prescribed body: linear between the times, constant before and after; replaces the constants of its spec.
+  body: number. n: number of times, >= 1. t: n, s, increasing. velocity: n x 3, m/s. omega: n x 3, space frame, rad/s; NULL
+  for none.
 */
 FROND_EXTERN PetscErrorCode RigidSetMotionTable(Rigid rigid, PetscInt body, PetscInt n, const PetscReal t[],
                                                 const PetscReal velocity[], const PetscReal omega[]);
 
-/* Wrench: force (N) and torque about the centre of mass (N m), space frame, held over the next RigidAdvance(). */
+/* Forget the wrenches of RigidAddLoad(). */
 FROND_EXTERN PetscErrorCode RigidZeroLoads(Rigid rigid);
+/*
+  Add a wrench, held over the next RigidAdvance(). Fixed and prescribed bodies take loads and ignore them. body: number. F: 3,
+  N, or NULL for none. T: 3, about the centre of mass, space frame, N m, or NULL for none. Source: the paper, Eqs. 12 and 13.
+*/
 FROND_EXTERN PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const PetscReal F[3], const PetscReal T[3]);
+/*
+  Integrate in -rigid_substeps steps, see rigidstep.c and rigidconstraint.c. t: s, not in the past. Source: the paper, Eqs.
+  12-17.
+*/
 FROND_EXTERN PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t);
+/*
+  Each output may be NULL. kinetic: of free and prescribed bodies, J. potential: -g.(m X - rho V X_v) of the free ones, X_v
+  the centroid of the volume, J.
+*/
 FROND_EXTERN PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, PetscReal *potential);
+/*
+  Sums over the free and prescribed bodies; each output may be NULL. p: 3, m V, kg m/s. L: 3, about the origin, m X x V + J w,
+  kg m^2/s.
+*/
 FROND_EXTERN PetscErrorCode RigidGetMomentum(Rigid rigid, PetscReal p[3], PetscReal L[3]);
 
 /*
@@ -164,20 +218,33 @@ typedef struct {
   PetscReal rupture; /* hinge, bend: angle at which the joint breaks for good, rad; default: never */
 } RigidJointSpec;
 
+/* A ball joint of nothing yet: bodies, point and axis must be set. spec: to be filled. */
 FROND_EXTERN PetscErrorCode RigidJointSpecInit(RigidJointSpec *spec);
+/*
+  Append a joint, before RigidSetUp(); errors name the joint, the field, its value and the rule. spec: copied. joint: its
+  number, or NULL.
+*/
 FROND_EXTERN PetscErrorCode RigidAddJoint(Rigid rigid, const RigidJointSpec *spec, PetscInt *joint);
-/* Number of joints. */
+/* n: number of joints. */
 FROND_EXTERN PetscErrorCode RigidGetNumJoints(Rigid rigid, PetscInt *n);
-/* Force (N) and moment about the joint's point (N m) on body a over the last step, space frame; each may be NULL. */
+/*
+  On body a over the last step, space frame; each output may be NULL. joint: number. F: 3, force, N. M: 3, moment about the
+  joint's point, N m.
+*/
 FROND_EXTERN PetscErrorCode RigidGetJointForce(Rigid rigid, PetscInt joint, PetscReal F[3], PetscReal M[3]);
-/* Free coordinate: hinge angle (rad), slider or linear shift, spring elongation (m), largest bend angle (rad); broken: ruptured.
- */
+/*
+  Each output may be NULL. joint: number. coordinate: hinge angle (rad), slider or linear shift (m), spring elongation (m),
+  largest bend angle (rad). broken: ruptured.
+*/
 FROND_EXTERN PetscErrorCode RigidGetJointState(Rigid rigid, PetscInt joint, PetscReal *coordinate, PetscBool *broken);
-/* Largest violation of the constraints, of position (m, rad) and of velocity (m/s, rad/s), now. */
+/* Largest violation of the constraints now; each output may be NULL. position: m or rad. velocity: m/s or rad/s. */
 FROND_EXTERN PetscErrorCode RigidGetJointError(Rigid rigid, PetscReal *position, PetscReal *velocity);
-/* Energy in the springs of the joints, J. */
+/* elastic: energy in the springs of the joints, J. */
 FROND_EXTERN PetscErrorCode RigidGetJointEnergy(Rigid rigid, PetscReal *elastic);
-/* Steps of the integrator in one RigidAdvance(), >= 1. */
+/*
+  Free bodies need one step only; joints with stiff springs or fast mechanisms may need more. n: steps of the integrator in
+  one RigidAdvance(), >= 1.
+*/
 FROND_EXTERN PetscErrorCode RigidSetSubsteps(Rigid rigid, PetscInt n);
 
 /*
@@ -203,33 +270,44 @@ typedef struct {
   PetscReal yield, rupture; /* of each hinge, N m, rad; default: never */
 } RigidLumpedSpec;
 
+/* No section, trunks or stiffness yet; free at both ends; no dampers. spec: to be filled. */
 FROND_EXTERN PetscErrorCode RigidLumpedSpecInit(RigidLumpedSpec *spec);
-/* Adds `trunks` bodies and their joints; *body and *joint are the first ones (each may be NULL). */
+/*
+  Add `trunks` bodies and their joints, before RigidSetUp(). spec: copied. body: number of the first body, or NULL. joint:
+  number of the first joint, or NULL. Source: Capasso et al., Eqs. 10-23.
+*/
 FROND_EXTERN PetscErrorCode RigidAddLumpedBeam(Rigid rigid, const RigidLumpedSpec *spec, PetscInt *body, PetscInt *joint);
-/* Ends of the trunks of a beam whose first body is `body`: (trunks + 1) x 3, m. */
+/* Ends of the trunks of a beam. body: its first body. trunks: how many. x: (trunks + 1) x 3, m. */
 FROND_EXTERN PetscErrorCode RigidGetLumpedNodes(Rigid rigid, PetscInt body, PetscInt trunks, PetscReal x[]);
 
 /*
-  Short-range forces between bodies, see shortrange.h. Two spheres: Eq. 31. A sphere and any other body: Eq. 31 with the other
-  surface taken as plane. Any two other bodies: Eq. 32 over surface markers about `spacing` apart, and contact of each one's
-  markers with the other's surface. Bodies that share a joint are left alone. Lubrication is for 3D only.
+  Short-range forces between bodies, see shortrange.h; before RigidSetUp(). Two spheres: Eq. 31. A sphere and any other body: Eq.
+  31 with the other surface taken as plane. Any two other bodies: Eq. 32 over surface markers, and contact of each one's markers
+  with the other's surface. Bodies that share a joint are left alone. Lubrication is for 3D only. p: parameters, copied. Source:
+  the paper, Eqs. 31 and 32.
 */
 FROND_EXTERN PetscErrorCode RigidSetShortRange(Rigid rigid, const ShortRange *p);
-/* Distance of surface markers for bodies that are no spheres, m; needed if there are such. */
+/* Distance of surface markers, needed when there are bodies that are no spheres. spacing: m, > 0; 0 (default): none. */
 FROND_EXTERN PetscErrorCode RigidSetShortRangeSpacing(Rigid rigid, PetscReal spacing);
-/* Periodic lengths, m; 0 for none: short-range forces act between nearest images. */
+/* Short-range forces act between nearest images. period: 3, m; 0 for none. */
 FROND_EXTERN PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3]);
-/* Refuses bodies that overlap, naming both; joined bodies, and pairs of which none is free, are left alone. spacing: see above.
- */
+/*
+  Refuse bodies that overlap, naming both; joined bodies, and pairs of which none is free, are left alone. spacing: distance
+  of surface markers, m, as RigidSetShortRangeSpacing().
+*/
 FROND_EXTERN PetscErrorCode RigidCheckOverlap(Rigid rigid, PetscReal spacing);
 
-/* Signed distance (m) from a point in the body frame to the surface, negative inside; exact for every shape. */
+/*
+  Signed distance to the surface (m), negative inside; exact for every shape. spec: the body; its placement is not used.
+  xbody: 3, point in the body frame, m.
+*/
 FROND_EXTERN PetscReal RigidShapeDistance(const RigidBodySpec *spec, const PetscReal xbody[3]);
 
 /*
-  Fill a body with BCE markers to a depth below its surface (Sect. 2.4, Fig. 2a), nearly dp apart: layers at depth
-  dp/2, 3dp/2, ... ; outputs, allocated with PetscMalloc and owned by the caller: body-frame positions n x 3 (m), the volume that
-  each stands for (m^3; area in 2D) and its depth below the surface (m). Volumes add up to the volume of the filled layers.
+  Fill a body with BCE markers in layers at depth dp/2, 3dp/2, ... below its surface, nearly dp apart; volumes add up to the
+  volume of the layers. spec: the body. dim: 2 or 3. dp: spacing, m, > 0. depthmax: how deep, m. n: number of markers. x: n x
+  3, body frame, m. volume: n, m^3 (2D: m^2). depth: n, m below the surface; the caller frees the three arrays with
+  PetscFree(). Source: the paper, Sect. 2.4, Fig. 2a.
 */
 FROND_EXTERN PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscReal dp, PetscReal depthmax,
                                              PetscInt *n, PetscReal **x, PetscReal **volume, PetscReal **depth);

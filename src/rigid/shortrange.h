@@ -29,20 +29,39 @@ typedef struct {
   PetscBool kink;        /* the factor 1/s - 1/Dc as printed in Eqs. 31, 32 */
 } ShortRange;
 
+/* No lubrication, no contact. p: to be filled. */
 FROND_EXTERN PetscErrorCode ShortRangeInit(ShortRange *p);
-/* Refuse parameters out of range, naming the one. */
+/* Refuse parameters out of range, naming the one. comm: communicator of the errors. p: parameters. */
 FROND_EXTERN PetscErrorCode ShortRangeCheck(MPI_Comm comm, const ShortRange *p);
-/* Eq. 31: spheres of radii ai, aj (m); PETSC_INFINITY for a plane wall. */
+/*
+  Resistance gamma (N s/m) between two spheres, or a sphere and a wall. p: parameters. ai: radius, m. aj: radius, m;
+  PETSC_INFINITY for a plane wall. s: gap, m. Source: the paper, Eq. 31.
+*/
 FROND_EXTERN PetscReal ShortRangeSphere(const ShortRange *p, PetscReal ai, PetscReal aj, PetscReal s);
-/* Eq. 32: one pair of surface markers, s* apart, each of size h (m). */
+/*
+  Resistance gamma (N s/m) of one pair of surface markers. p: parameters. h: size of a marker, m. s: their distance s*, m.
+  Source: the paper, Eq. 32.
+*/
 FROND_EXTERN PetscReal ShortRangeMarkers(const ShortRange *p, PetscReal h, PetscReal s);
-/* Repulsion, N: R = 1/(1/ai + 1/aj) (m), m reduced mass (kg), gap s (m), dsdt its rate (m/s). */
+/*
+  Repulsion (N), 0 or more. p: parameters. R: 1/(1/ai + 1/aj), m. m: reduced mass, kg. s: gap, m. dsdt: its rate, m/s. Source:
+  Tsuji et al. (1992); Antypov and Elliott (2011).
+*/
 FROND_EXTERN PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, PetscReal s, PetscReal dsdt);
-/* Largest overlap of an elastic collision at speed v, m (Hertz); below the roughness the smooth surfaces never meet. */
+/*
+  Largest overlap (m) of an elastic collision, m v^2/2 = (2/5) k d^(5/2); below the roughness the smooth surfaces never meet.
+  p: parameters. R: 1/(1/ai + 1/aj), m. m: reduced mass, kg. v: speed, m/s. Source: Hertz.
+*/
 FROND_EXTERN PetscReal ShortRangeOverlap(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v);
-/* Duration of an elastic collision at speed v, s (Hertz): resolve it by 20 steps or more. */
+/*
+  Duration (s) of an elastic collision: resolve it by 20 steps or more. p: parameters. R: 1/(1/ai + 1/aj), m. m: reduced mass,
+  kg. v: speed, m/s. Source: Hertz.
+*/
 FROND_EXTERN PetscReal ShortRangeContactTime(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v);
-/* St_c = integral of the factor of Eq. 31 over s_min < s < Dc: the share of St that the approach to contact uses up. */
+/*
+  St_c (-), integral of the factor of Eq. 31 over s_min < s < Dc: the share of St that the approach to contact uses up. p:
+  parameters.
+*/
 FROND_EXTERN PetscReal ShortRangeCriticalStokes(const ShortRange *p);
 
 #endif

@@ -73,125 +73,185 @@ FROND_EXTERN const char *const SphIntegratorTypes[];
 /* Names of SphShiftingType. */
 FROND_EXTERN const char *const SphShiftingTypes[];
 
+/*
+  An empty fluid with the default parameters. Several may live side by side. comm: communicator of one rank; every error
+  message goes through it. sph: the new fluid. Source: the paper, Sect. 2.1, for the defaults that it gives.
+*/
 FROND_EXTERN PetscErrorCode SphCreate(MPI_Comm comm, Sph *sph);
-/* Prefix put before -sph_... in the options. */
+/* prefix: put before sph_... in the names of the options, without a leading dash; copied; NULL or "" (default) for none. */
 FROND_EXTERN PetscErrorCode SphSetOptionsPrefix(Sph sph, const char prefix[]);
-/* Backend: cpu, cuda or auto. */
+/* Backend, before SphSetUp(). type: SPHCPU (default), SPHCUDA or SPHAUTO; copied; checked by SphSetUp(). */
 FROND_EXTERN PetscErrorCode SphSetType(Sph sph, SphType type);
-/* Backend in use (auto is resolved by SphSetUp()); borrowed. */
+/* type: backend in use (auto is resolved by SphSetUp()); borrowed. */
 FROND_EXTERN PetscErrorCode SphGetType(Sph sph, SphType *type);
-/* 2 or 3. Before markers are added. */
+/* Before markers are added. dim: 2 (x-y plane, everything per m of depth) or 3 (default). */
 FROND_EXTERN PetscErrorCode SphSetDimension(Sph sph, PetscInt dim);
-/* Initial marker spacing dp, m, > 0. */
+/* Initial marker spacing, before SphSetUp(); there is no default. dp: m, > 0. */
 FROND_EXTERN PetscErrorCode SphSetSpacing(Sph sph, PetscReal dp);
-/* Smoothing length h, m, 1 to 4 dp; the kernel reaches 2h. */
+/* Smoothing length, before SphSetUp(). h: m, 1 to 4 dp; the kernel reaches 2h. Source: the paper, Eq. 2. */
 FROND_EXTERN PetscErrorCode SphSetSmoothingLength(Sph sph, PetscReal h);
-/* h/dp, when h is not set: 1 to 4, default 1.2. */
+/* Smoothing length over spacing when h itself is not set; before SphSetUp(). ratio: h/dp (-), 1 to 4, default 1.2. */
 FROND_EXTERN PetscErrorCode SphSetSmoothingRatio(Sph sph, PetscReal ratio);
-/* Reference density rho0, kg/m^3, > 0. */
+/* Reference density, before SphSetUp(). rho0: kg/m^3, > 0, default 1000. Source: the paper, Eq. 7. */
 FROND_EXTERN PetscErrorCode SphSetDensity(Sph sph, PetscReal rho0);
-/* Viscosity mu, Pa s, >= 0. */
+/* Dynamic viscosity, before SphSetUp(). mu: Pa s, >= 0, default 0.001. Source: the paper, Eq. 6. */
 FROND_EXTERN PetscErrorCode SphSetViscosity(Sph sph, PetscReal mu);
-/* Expected maximum speed, m/s: the speed of sound is ten times it unless set. */
+/*
+  Speed that the flow is expected to reach: the speed of sound is ten times it unless set. vmax: m/s, > 0. Source: the paper,
+  Eq. 8.
+*/
 FROND_EXTERN PetscErrorCode SphSetMaxSpeed(Sph sph, PetscReal vmax);
-/* Numerical speed of sound c_s, m/s, > 0. */
+/* Numerical speed of sound, before SphSetUp(). cs: m/s, > 0; default 10 vmax. Source: the paper, Eq. 7. */
 FROND_EXTERN PetscErrorCode SphSetSoundSpeed(Sph sph, PetscReal cs);
-/* Exponent of the equation of state, Eq. 7; default 7. */
+/* Exponent of the equation of state, before SphSetUp(). gamma: (-), 1 to 20, default 7. Source: the paper, Eq. 7. */
 FROND_EXTERN PetscErrorCode SphSetGamma(Sph sph, PetscReal gamma);
-/* Pressure added everywhere, Pa. */
+/* Constant added to the pressure of the equation of state, before SphSetUp(). pb: Pa, >= 0, default 0. */
 FROND_EXTERN PetscErrorCode SphSetBackgroundPressure(Sph sph, PetscReal pb);
-/* Factor zeta of Eq. 11, default 0.5; 0: no XSPH. */
+/* Factor of the XSPH velocity, before SphSetUp(). zeta: (-), 0 (no XSPH) to 1, default 0.5. Source: the paper, Eq. 11. */
 FROND_EXTERN PetscErrorCode SphSetXSPH(Sph sph, PetscReal zeta);
-/* Density re-initialisation, Eq. 9, and its period in steps. */
+/*
+  Re-initialisation of the density, before SphSetUp(). type: form of the sum, default Shepard. every: its period in steps, >=
+  1, default 10. Source: the paper, Eq. 9; Shepard's form divides by the kernel sum.
+*/
 FROND_EXTERN PetscErrorCode SphSetDensityReinit(Sph sph, SphReinitType type, PetscInt every);
-/* Regularisation of Eq. 6, default 0.01. */
+/*
+  Regularisation of the viscous term, before SphSetUp(). epsilon: (-), in units of h^2, 1e-6 to 1, default 0.01. Source: the
+  paper, Eq. 6.
+*/
 FROND_EXTERN PetscErrorCode SphSetViscosityEpsilon(Sph sph, PetscReal epsilon);
-/* Whether kernel sums are normalised on the initial lattice (default: yes). */
+/* Whether kernel, gradient and viscous sums are normalised on the initial lattice; before SphSetUp(). normalise: default yes. */
 FROND_EXTERN PetscErrorCode SphSetLatticeNormalisation(Sph sph, PetscBool normalise);
-/* Form of the viscous term. */
+/*
+  Form of the viscous term, before SphSetUp(). type: see SphViscosityType. Source: the paper, Eq. 6; Morris, Fox, Zhu (1997),
+  Eq. 22; Monaghan (1992).
+*/
 FROND_EXTERN PetscErrorCode SphSetViscosityType(Sph sph, SphViscosityType type);
-/* Factor alpha of the artificial viscosity (default 0.1); acts like nu = alpha c_s h/(2 (dim + 2)) (Monaghan 2005). */
+/*
+  Factor of the artificial viscosity, before SphSetUp(); acts like nu = alpha c_s h/(2 (dim + 2)). alpha: (-), 0 to 10,
+  default 0.1. Source: Monaghan (2005), Sect. 7.
+*/
 FROND_EXTERN PetscErrorCode SphSetArtificialViscosity(Sph sph, PetscReal alpha);
-/* Density diffusion and its factor delta (default 0.1). */
+/*
+  Density diffusion, before SphSetUp(). type: form. delta: its factor (-), 0 to 1, default 0.1. Source: Molteni and Colagrossi
+  (2009); Fourtakas et al. (2019).
+*/
 FROND_EXTERN PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType type, PetscReal delta);
-/* Shifting velocity and its factor A, sphpair.h (default 2; large ones stir the fluid). */
+/*
+  Shifting velocity, before SphSetUp(). type: form. factor: A of sphpair.h (-), 0 to 5, default 2; large ones stir the fluid.
+  Source: Sun et al. (2017).
+*/
 FROND_EXTERN PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor);
-/* Time integrator of the fluid. */
+/* Time integrator of the fluid, before SphSetUp(). integrator: rk2 (default), verlet or symplectic; equations in sphstep.h. */
 FROND_EXTERN PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator);
-/* Kernel: cubic spline (default) or Wendland C2. */
+/*
+  Smoothing kernel, before SphSetUp(). kernel: cubic spline (default) or Wendland C2. Source: the paper, Eq. 2; Wendland
+  (1995).
+*/
 FROND_EXTERN PetscErrorCode SphSetKernel(Sph sph, SphKernelType kernel);
-/* Precision of the pair arithmetic; the state is double in both. */
+/* Precision of the pair arithmetic, before SphSetUp(). precision: single (default) or double; the state is double in both. */
 FROND_EXTERN PetscErrorCode SphSetPrecision(Sph sph, SphPrecision precision);
-/* Boundary treatment. */
+/* Boundary treatment, before SphSetUp(). wall: bce, or adami (default). Source: the paper, Sect. 2.4; Adami et al. (2012). */
 FROND_EXTERN PetscErrorCode SphSetWall(Sph sph, SphWallType wall);
-/* Of all boundary markers; SphSetGroupSlip() for one group, after SphAddBoundary() and before SphSetUp(). */
+/*
+  Slip along all boundary markers, before SphSetUp(). slip: none (default) or free; free needs wall adami. Source: Adami et
+  al. (2012), Sect. 3.2.
+*/
 FROND_EXTERN PetscErrorCode SphSetSlip(Sph sph, SphSlipType slip);
+/*
+  Slip along the markers of one group, after SphAddBoundary() and before SphSetUp(). group: as SphAddBoundary() gave it. slip:
+  none or free.
+*/
 FROND_EXTERN PetscErrorCode SphSetGroupSlip(Sph sph, PetscInt group, SphSlipType slip);
-/* Body force per mass, m/s^2. */
+/* Body force per mass. f: 3, m/s^2, default 0. */
 FROND_EXTERN PetscErrorCode SphSetBodyForce(Sph sph, const PetscReal f[3]);
-/* Corners of the domain, m; the third coordinate is ignored in 2D. */
+/*
+  Corners of the domain, before SphSetUp(); markers that leave it are taken out. lo: 3, m. hi: 3, m, above lo; the third
+  number is ignored in 2D.
+*/
 FROND_EXTERN PetscErrorCode SphSetDomain(Sph sph, const PetscReal lo[3], const PetscReal hi[3]);
-/* Which axes are periodic. */
+/* Which axes are periodic, before SphSetUp(). periodic: 3 flags; the domain is then a whole period along the axis. */
 FROND_EXTERN PetscErrorCode SphSetPeriodic(Sph sph, const PetscBool periodic[3]);
-/* Fixed time step, s; PETSC_DECIDE (-1): the largest stable one. */
+/* Fixed time step. dt: s, > 0; PETSC_DECIDE (-1, default): the largest stable one each step. */
 FROND_EXTERN PetscErrorCode SphSetTimeStep(Sph sph, PetscReal dt);
-/* Safety factor of the stable step, default 0.25. */
+/* Safety factor of the stable step. cfl: (-), in (0, 1], default 0.25. */
 FROND_EXTERN PetscErrorCode SphSetCFL(Sph sph, PetscReal cfl);
-/* A stable step below this floor (s) ends the run with PETSC_ERR_CONV_FAILED; 0 (default) for none. */
+/* Floor of the stable step: below it the run ends with PETSC_ERR_CONV_FAILED. dtmin: s, >= 0; 0 (default) for none. */
 FROND_EXTERN PetscErrorCode SphSetMinTimeStep(Sph sph, PetscReal dtmin);
-/* Steps between searches for non-finite values, >= 1. */
+/* Period of the search for values that are not finite. every: steps, >= 1, default 10. */
 FROND_EXTERN PetscErrorCode SphSetCheckEvery(Sph sph, PetscInt every);
-/* Read -sph_.... */
+/* Read -sph_... (with the prefix) into the setters above; `frond help` and README list them. */
 FROND_EXTERN PetscErrorCode SphSetFromOptions(Sph sph);
+/*
+  Check the parameters, choose the backend, sort the markers and evaluate the first right-hand side; parameters and markers
+  are fixed from then on.
+*/
 FROND_EXTERN PetscErrorCode SphSetUp(Sph sph);
-/* Print parameters and counts. */
+/* Print parameters and counts. viewer: an ASCII viewer of PETSc. */
 FROND_EXTERN PetscErrorCode SphView(Sph sph, PetscViewer viewer);
-/* Free everything; *sph becomes NULL. */
+/* Free everything. sph: the fluid; becomes NULL. */
 FROND_EXTERN PetscErrorCode SphDestroy(Sph *sph);
 
-/* 2 or 3. */
+/* dim: 2 or 3. */
 FROND_EXTERN PetscErrorCode SphGetDimension(Sph sph, PetscInt *dim);
-/* Marker spacing, m. */
+/* dp: marker spacing, m. */
 FROND_EXTERN PetscErrorCode SphGetSpacing(Sph sph, PetscReal *dp);
-/* Smoothing length, m. */
+/* h: smoothing length, m. */
 FROND_EXTERN PetscErrorCode SphGetSmoothingLength(Sph sph, PetscReal *h);
-/* Reference density, kg/m^3. */
+/* rho0: reference density, kg/m^3. */
 FROND_EXTERN PetscErrorCode SphGetDensity(Sph sph, PetscReal *rho0);
-/* Viscosity, Pa s. */
+/* mu: dynamic viscosity, Pa s. */
 FROND_EXTERN PetscErrorCode SphGetViscosity(Sph sph, PetscReal *mu);
-/* Numerical speed of sound, m/s. */
+/* cs: numerical speed of sound, m/s. */
 FROND_EXTERN PetscErrorCode SphGetSoundSpeed(Sph sph, PetscReal *cs);
-/* Body force per mass, m/s^2. */
+/* f: 3, body force per mass, m/s^2. */
 FROND_EXTERN PetscErrorCode SphGetBodyForce(Sph sph, PetscReal f[3]);
-/* Corners (m) and periodic axes; any may be NULL. */
+/* Each output may be NULL. lo: 3, m. hi: 3, m. periodic: 3 flags. */
 FROND_EXTERN PetscErrorCode SphGetDomain(Sph sph, PetscReal lo[3], PetscReal hi[3], PetscBool periodic[3]);
-/* The depth below a surface to which BCE markers are needed: 2h. */
+/* support: the depth below a surface to which BCE markers are needed, 2h, m. Source: the paper, Sect. 2.4. */
 FROND_EXTERN PetscErrorCode SphGetSupport(Sph sph, PetscReal *support);
 
 /*
-  Markers. x, v: n x 3 (m, m/s; v may be NULL for rest). p: n (Pa) initial pressures, or NULL for zero.
-  Boundary markers form groups (walls, each beam, each rigid body); volume: n (m^3), depth: n (m below the
-  surface). Marker masses are rho(p) dp^dim for fluid, rho(p) the
-  density at the initial pressure, and rho0 volume for boundary markers.
+  Fluid markers of mass rho(p) dp^dim, rho(p) the density at the initial pressure; before any SphAddBoundary(). n: number, >=
+  0. x: n x 3, m. v: n x 3, m/s, or NULL for rest. p: n, Pa, or NULL for 0. Source: the paper, Eq. 7 inverted.
 */
 FROND_EXTERN PetscErrorCode SphAddFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *p);
+/*
+  A group of boundary markers (a wall, a beam, a body) of mass rho0 volume. n: number, >= 0. x: n x 3, m. v: n x 3, m/s, or
+  NULL for rest. volume: n, m^3 (2D: m^2), > 0. depth: n, m below the surface. group: its number. Source: the paper, Sect.
+  2.4.
+*/
 FROND_EXTERN PetscErrorCode SphAddBoundary(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *volume,
                                            const PetscReal *depth, PetscInt *group);
-/* Numbers of fluid markers, of boundary markers, and of fluid markers that left the domain; any may be NULL. */
+/* Each output may be NULL. fluid: fluid markers. boundary: boundary markers. left: fluid markers that left the domain. */
 FROND_EXTERN PetscErrorCode SphGetCounts(Sph sph, PetscInt *fluid, PetscInt *boundary, PetscInt *left);
 
-/* The largest stable time step now (acoustic, force and viscous limits), or the fixed one after checking it. */
+/* dt: the largest stable time step now (acoustic, force and viscous limits), or the fixed one after checking it, s. */
 FROND_EXTERN PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt);
+/* First stage: rates at t, fluid at t + dt/2 (verlet: it stays). Set the boundary motion at t + dt/2 next. dt: s, > 0. */
 FROND_EXTERN PetscErrorCode SphStepBegin(Sph sph, PetscReal dt);
+/*
+  Second-stage rates and boundary forces for the boundary motion as set now; may be repeated with another motion before
+  SphStepEnd(), which then takes the last ones. Not with verlet.
+*/
 FROND_EXTERN PetscErrorCode SphStepEvaluate(Sph sph);
+/*
+  Second stage: rates and boundary forces at t + dt/2 (verlet: those at t stay), fluid at t + dt. Set the boundary motion at t
+  + dt next.
+*/
 FROND_EXTERN PetscErrorCode SphStepEnd(Sph sph);
-/* Time (s) and number of steps; either may be NULL. */
+/* Each output may be NULL. t: time, s. step: number of steps. */
 FROND_EXTERN PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step);
 
-/* State of a group's markers: x (m), v (m/s), a (m/s^2; NULL for zero), n x 3, in the order of SphAddBoundary. */
+/*
+  State of a group's markers, in the order of SphAddBoundary(). group: as SphAddBoundary() gave it. x: n x 3, m. v: n x 3,
+  m/s. a: n x 3, m/s^2, or NULL for 0.
+*/
 FROND_EXTERN PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v,
                                                  const PetscReal *a);
-/* Fluid forces on a group's markers from the last right-hand side of Eq. 5, times the marker mass: n x 3, N. */
+/*
+  Fluid forces on a group's markers: the right-hand side of Eq. 5 times the marker mass. group: as SphAddBoundary() gave it.
+  f: n x 3, N (2D: N/m). Source: the paper, Eq. 5 and Sect. 2.4.
+*/
 FROND_EXTERN PetscErrorCode SphGetBoundaryForce(Sph sph, PetscInt group, PetscReal *f);
 
 /* Fields of all markers in the order added (fluid first, then groups). Any pointer may be NULL. */
@@ -201,20 +261,23 @@ typedef struct {
   PetscReal *rho, *p; /* n, kg/m^3, Pa */
   PetscInt *group;    /* n, -1 fluid, -2 left the domain, else the boundary group */
 } SphFields;
-/* Copy fields into the arrays given. */
+/* Copy fields, in the order added. f: arrays to fill, each with room for all markers or NULL. */
 FROND_EXTERN PetscErrorCode SphGetFields(Sph sph, const SphFields *f);
-/* Overwrite fields (x, v, rho as given, others ignored); for initial conditions, restart and fault tests. */
+/*
+  Overwrite fields, for initial conditions, restart and fault tests. f: x, v, rho as given, each may be NULL; the others are
+  ignored.
+*/
 FROND_EXTERN PetscErrorCode SphSetFields(Sph sph, const SphFields *f);
 
-/*
-  The whole state between two steps as bytes, for rolling back a step or restarting: the run goes on with the same bits after
-  SphRestoreState() as it did after SphSaveState(). bytes: what SphGetStateSize() gives right before saving. The buffer fits the
-  same scene, backend and machine only. Errors: PETSC_ERR_ARG_SIZ when the markers or the buffer's size do not fit.
-*/
+/* bytes: what SphSaveState() needs right now. */
 FROND_EXTERN PetscErrorCode SphGetStateSize(Sph sph, size_t *bytes);
-/* Write the state to buffer (bytes long). */
+/*
+  The whole state between two steps, for rolling back a step or restarting: the run goes on with the same bits after
+  SphRestoreState() as it did after saving. Fits the same scene, backend and machine only. bytes: of SphGetStateSize(), asked
+  right before. buffer: bytes long, written.
+*/
 FROND_EXTERN PetscErrorCode SphSaveState(Sph sph, size_t bytes, void *buffer);
-/* Go back to the state in buffer. */
+/* Go back to a saved state. bytes: length of the buffer. buffer: what SphSaveState() wrote. */
 FROND_EXTERN PetscErrorCode SphRestoreState(Sph sph, size_t bytes, const void *buffer);
 
 /* Sums over fluid markers: mass (kg), linear momentum (kg m/s), kinetic energy (J), max speed (m/s), max |rho/rho0-1|. */
@@ -223,12 +286,15 @@ typedef struct {
   PetscReal kinetic, potential, internal; /* J */
   PetscReal vmax, compression;            /* m/s, - */
 } SphSums;
-/* The sums of SphSums over the fluid now. */
+/* sums: over the fluid markers now. */
 FROND_EXTERN PetscErrorCode SphGetSums(Sph sph, SphSums *sums);
-/* Fluid velocity and pressure at points (n x 3) by Shepard interpolation over fluid markers; NaN where no marker is near. */
+/*
+  Velocity and pressure at points by Shepard interpolation over fluid markers; NaN where none is near. n: number of points. x:
+  n x 3, m. v: n x 3, m/s, or NULL. p: n, Pa, or NULL.
+*/
 FROND_EXTERN PetscErrorCode SphSample(Sph sph, PetscInt n, const PetscReal *x, PetscReal *v, PetscReal *p);
 
-/* Bytes of memory that n markers need, and a marker-evaluation count since set-up for throughput figures. */
+/* Each output may be NULL. bytes: memory of the markers. evaluations: marker evaluations since set-up, for throughput figures. */
 FROND_EXTERN PetscErrorCode SphGetWork(Sph sph, PetscReal *bytes, PetscReal *evaluations);
 
 #endif

@@ -11,14 +11,19 @@
 */
 typedef PetscBool (*SphFillKeep)(const PetscReal x[3], void *ctx);
 
-/* Cell-centred lattice of spacing dp in the box [lo,hi]: n x 3 positions (m). Along a periodic axis the box must be a whole
- * number of dp. */
+/*
+  Cell-centred lattice in the box [lo, hi]; along a periodic axis the box must be a whole number of dp. dim: 2 or 3. dp:
+  spacing, m, > 0. lo: 3, m. hi: 3, m. keep: which sites to keep, NULL for all. ctx: its second argument. n: number of sites.
+  x: n x 3, m; the caller frees it with PetscFree().
+*/
 FROND_EXTERN PetscErrorCode SphFillBox(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3], SphFillKeep keep,
                                        void *ctx, PetscInt *n, PetscReal **x);
 
 /*
-  Layers of wall markers outside the box [lo,hi] on the faces flagged in face[6] (xmin,xmax,ymin,ymax,zmin,zmax), to `depthmax`
-  (m); corners included once. Volume (m^3) dp^dim each; depth (m) below the box face.
+  Layers of wall markers outside the box [lo, hi], corners once. dim: 2 or 3. dp: spacing, m, > 0. lo: 3, m. hi: 3, m. face: 6
+  flags, xmin, xmax, ymin, ymax, zmin, zmax. periodic: 3 flags: walls go on to the ends of such an axis. depthmax: how deep,
+  m. n: number of markers. x: n x 3, m. volume: n, m^3, dp^dim each (2D: m^2). depth: n, m below the box face; the caller
+  frees the three arrays with PetscFree(). Source: the paper, Sect. 2.4.
 */
 FROND_EXTERN PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3],
                                          const PetscBool face[6], const PetscBool periodic[3], PetscReal depthmax, PetscInt *n,
