@@ -6,3 +6,4 @@ frond_test(test_sph_cavity_400 SOURCES test_sph_cavity.c ARGS -re 400 -across 80
 frond_test(test_sph_slip SOURCES test_sph_slip.c LABELS unit TIMEOUT 60)
 frond_test(test_sph_dambreak SOURCES test_sph_dambreak.c LABELS validation)
 frond_test(test_sph_dambreak_fine SOURCES test_sph_dambreak.c ARGS -across 40 LABELS validation-long TIMEOUT 1800)
+frond_test(test_sph_grid SOURCES test_sph_grid.c LABELS unit TIMEOUT 60)

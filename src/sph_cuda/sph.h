@@ -288,11 +288,39 @@ typedef struct {
 } SphSums;
 /* sums: over the fluid markers now. */
 FROND_EXTERN PetscErrorCode SphGetSums(Sph sph, SphSums *sums);
+/* Fields at points: the kernel-weighted mean (Shepard), or a linear least squares fit, exact for linear fields also at walls. */
+typedef enum { SPH_INTERPOLATE_SHEPARD, SPH_INTERPOLATE_LINEAR } SphInterpolation;
+/* Names of SphInterpolation. */
+FROND_EXTERN const char *const SphInterpolations[];
+/* What SphInterpolate() gives at n points; any may be NULL. NaN where no fluid marker lies within 2h. */
+typedef struct {
+  PetscReal *v, *p;    /* n x 3, m/s; n, Pa */
+  PetscReal *rho;      /* n, kg/m^3 */
+  PetscReal *fraction; /* n: part of the surroundings that is fluid, the kernel sum; 1 inside, about 0.5 at a surface */
+} SphPoints;
+/*
+  Fields of the fluid at points, from the fluid markers around them. how: mean or linear fit. n: number of points. x: n x 3, m.
+  out: the arrays to fill. Source: Shepard (1968); Lancaster, Salkauskas (1981).
+*/
+FROND_EXTERN PetscErrorCode SphInterpolate(Sph sph, SphInterpolation how, PetscInt n, const PetscReal *x, const SphPoints *out);
 /*
   Velocity and pressure at points by Shepard interpolation over fluid markers; NaN where none is near. n: number of points. x:
   n x 3, m. v: n x 3, m/s, or NULL. p: n, Pa, or NULL.
 */
 FROND_EXTERN PetscErrorCode SphSample(Sph sph, PetscInt n, const PetscReal *x, PetscReal *v, PetscReal *p);
+
+/* Flow through a plane: in 2D per metre of depth. */
+typedef struct {
+  PetscReal area;         /* wetted, m^2 */
+  PetscReal volume, mass; /* flow, m^3/s, kg/s */
+  PetscReal pressure;     /* mean over the wetted area, Pa; 0 when dry */
+} SphPlane;
+/*
+  Flow through a parallelogram, positive along edge1 x edge2; in 2D through the line along edge1, positive along (edge1_y,
+  -edge1_x). corner: 3, m. edge1: 3, m. edge2: 3, m; NULL in 2D. plane: the flow.
+*/
+FROND_EXTERN PetscErrorCode SphGetPlane(Sph sph, const PetscReal corner[3], const PetscReal edge1[3], const PetscReal edge2[3],
+                                        SphPlane *plane);
 
 /* Each output may be NULL. bytes: memory of the markers. evaluations: marker evaluations since set-up, for throughput figures. */
 FROND_EXTERN PetscErrorCode SphGetWork(Sph sph, PetscReal *bytes, PetscReal *evaluations);

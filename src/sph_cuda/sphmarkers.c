@@ -1,4 +1,4 @@
-/* sphmarkers.c - adding markers, reading and writing fields, sums and samples; arrays in the order added. */
+/* sphmarkers.c - adding markers, reading and writing fields, sums; arrays in the order added. */
 #include <math.h>
 typedef double sphreal;
 #include "sphimpl.h"
@@ -283,37 +283,6 @@ PetscErrorCode SphGetSums(Sph sph, SphSums *out)
   }
   t.vmax = sqrt(t.vmax);
   *out = t;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SphSample(Sph sph, PetscInt np, const PetscReal *x, PetscReal *v, PetscReal *pr)
-{
-  const SphParams *p = &sph->par;
-  const double r2max = 4.0 * p->h * p->h;
-
-  PetscFunctionBegin;
-  PetscCall((*sph->ops->pull)(sph));
-#pragma omp parallel for schedule(static)
-  for (PetscInt j = 0; j < np; j++) {
-    double sw = 0.0, sv[3] = {0.0, 0.0, 0.0}, sp = 0.0;
-    for (PetscInt i = 0; i < sph->n; i++) {
-      double r2 = 0.0;
-      if (sph->group[i] != -1) continue;
-      for (int k = 0; k < p->dim; k++) {
-        double d = x[3 * j + k] - sph->st.x[k][i];
-        if (p->periodic[k]) d -= (p->hi[k] - p->lo[k]) * rint(d / (p->hi[k] - p->lo[k]));
-        r2 += d * d;
-      }
-      if (r2 >= r2max) continue;
-      const double w = sph_w(p->kernel, sqrt(r2) / p->h) * sph->m[i] / (1.0 + sph->st.s[i]);
-      sw += w;
-      sp += w * (sph_eos(sph->st.s[i], p->B, p->gamma) + p->pb);
-      for (int k = 0; k < 3; k++) sv[k] += w * sph->st.v[k][i];
-    }
-    for (int k = 0; k < 3; k++)
-      if (v) v[3 * j + k] = sw > 0.0 ? sv[k] / sw : NAN;
-    if (pr) pr[j] = sw > 0.0 ? sp / sw : NAN;
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,46 @@
+/*
+  sphsearch.h - private: fluid markers sorted into cells of edge >= 2h on the host, for sums at arbitrary points (sphgrid.c,
+  sphopen.c). The markers are copied; the state's own order is left alone, so that every backend can use it after a pull.
+*/
+#ifndef SPHSEARCH_H
+#define SPHSEARCH_H
+
+#include "sphimpl.h"
+
+typedef struct {
+  SphGrid grid;
+  PetscInt n;
+  int *start;   /* cells + 1 */
+  double *x[3]; /* wrapped into the period, m */
+  double *v[3]; /* m/s */
+  double *vol;  /* m/rho, m^3 */
+  double *s;    /* rho/rho0 - 1 */
+  double *work; /* the memory of the above */
+} SphSearch;
+
+/* Sums at a point over the markers within 2h; d = x_b - x in units of h. */
+typedef struct {
+  double w[10];     /* V W times 1, d, d d (xx, xy, xz, yy, yz, zz), W without norm, m^3 */
+  double f[5][4];   /* V W (1, d) times vx, vy, vz, p, s */
+  PetscInt markers; /* how many */
+} SphPointSums;
+
+/* Which fluid markers: those within 2h of the box (lo, hi), all of them when lo is NULL. */
+extern PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal hi[3], SphSearch *search);
+extern PetscErrorCode SphSearchDestroy(SphSearch *search);
+extern void SphSearchSum(const Sph sph, const SphSearch *search, const PetscReal x[3], SphPointSums *sums);
+
+/*
+  Values vx, vy, vz, p, s at the point from its sums: order 1 the moving least squares fit of a linear function, exact for linear
+  fields (Lancaster, Salkauskas, Math. Comput. 37 (1981)), where the markers around allow one; else, and with order 0, the mean
+  weighted with the kernel (Shepard, ACM 23 (1968)). Returns the order used, or -1 with no marker near.
+*/
+extern int SphPointValues(const SphPointSums *sums, int dim, int order, double value[5]);
+
+/* Whether a marker belongs to the fluid: free, or of a buffer of an opening (sphopen.c). */
+static inline int SphIsFluid(int group)
+{
+  return group == -1 || group <= SPH_GROUP_OPEN;
+}
+
+#endif
