@@ -67,6 +67,20 @@ typedef struct {
   PetscInt joint;
 } SceneJoint;
 
+/* A regular grid of points; lo = hi along an axis makes a slice or a line. */
+typedef struct {
+  char name[APP_NAME_LEN];
+  PetscReal lo[3], hi[3], spacing; /* m */
+  PetscInt n[3], how;              /* points; SphInterpolation */
+  PetscBool setlo, sethi;
+} SceneGrid;
+typedef struct {
+  char name[APP_NAME_LEN];
+  PetscInt kind, how;                        /* 0 point, 1 plane; SphInterpolation */
+  PetscReal position[3], edge1[3], edge2[3]; /* m */
+  PetscBool set[3];
+} SceneProbe;
+
 /* Fields of a frame that may be left out. */
 enum { FIELD_VELOCITY, FIELD_DENSITY, FIELD_PRESSURE, FIELD_GROUP, FIELD_ACCELERATION, FIELD_COUNT };
 extern const char *const SceneFields[];
@@ -88,6 +102,9 @@ typedef struct {
   PetscInt nlumped, njoints;
   SceneLumped *lumped; /* beams of rigid trunks; beams holds the others */
   SceneJoint *joints;
+  PetscInt ngrids, nprobes;
+  SceneGrid *grids;
+  SceneProbe *probes;
   PetscReal tend, dt; /* s; dt only without fluid */
   char outdir[PETSC_MAX_PATH_LEN];
   PetscBool overwrite;
@@ -188,6 +205,7 @@ PetscErrorCode AppH5Group(int64_t loc, const char name[], int64_t *group);
 PetscErrorCode AppH5GroupClose(int64_t group);
 PetscErrorCode AppH5Real(int64_t loc, const H5Label *label, PetscBool single, PetscInt rows, PetscInt cols,
                          const PetscReal *data);
+PetscErrorCode AppH5Grid(int64_t loc, const H5Label *label, const PetscInt points[3], PetscInt cols, const PetscReal *data);
 PetscErrorCode AppH5Int(int64_t loc, const H5Label *label, PetscInt rows, PetscInt cols, const PetscInt *data);
 PetscErrorCode AppH5AttrReal(int64_t loc, const char name[], PetscReal value);
 PetscErrorCode AppH5AttrInt(int64_t loc, const char name[], PetscInt value);
@@ -203,6 +221,14 @@ typedef struct {
   PetscReal vmax, compression, residual, scale, forcelost, force, momentlost, moment, powerlost, power;
 } HistoryWorst;
 PetscErrorCode AppHistoryWorst(AppHistory history, HistoryWorst *worst);
+
+/* sceneprobe.c, appgrid.c: grids in the frames, probes in the history. */
+typedef PetscErrorCode (*AppPut)(AppHistory h, const char name[], const char unit[], const char description[], PetscReal value);
+PetscErrorCode AppSceneReadProbes(AppScene *scene);
+PetscErrorCode AppProbesSetUp(App *app);
+PetscErrorCode AppGridsWrite(App *app, int64_t file);
+PetscErrorCode AppProbesPut(App *app, AppPut put, AppHistory history);
+PetscReal AppGridStep(const SceneGrid *grid, PetscInt axis);
 
 /* apprun.c, appcheck.c */
 PetscErrorCode AppRun(App *app, int *exitcode);

@@ -254,6 +254,7 @@ PetscErrorCode AppBuild(App *app)
   PetscCall(build_sph(app));
   PetscCall(build_structures(app));
   PetscCall(build_couple(app));
+  PetscCall(AppProbesSetUp(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -87,14 +87,13 @@ PetscErrorCode AppH5AttrString(int64_t loc, const char name[], const char value[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rows x cols (cols 0: a plain list) of memtype, stored as filetype. */
-static PetscErrorCode dataset(int64_t loc, const H5Label *label, hid_t filetype, hid_t memtype, PetscInt rows, PetscInt cols,
-                              const void *data)
+/* An array of any shape, of memtype, stored as filetype. */
+static PetscErrorCode dataset_shape(int64_t loc, const H5Label *label, hid_t filetype, hid_t memtype, int rank,
+                                    const hsize_t dims[], const void *data)
 {
-  hsize_t dims[2] = {(hsize_t)rows, (hsize_t)cols};
-  hid_t space = H5Screate_simple(cols ? 2 : 1, dims, NULL);
+  hid_t space = H5Screate_simple(rank, dims, NULL);
   hid_t set = H5Dcreate2(loc, label->name, filetype, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  herr_t err = set >= 0 ? (rows ? H5Dwrite(set, memtype, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) : 0) : -1;
+  herr_t err = set >= 0 ? (dims[0] ? H5Dwrite(set, memtype, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) : 0) : -1;
 
   PetscFunctionBegin;
   H5Sclose(space);
@@ -105,11 +104,33 @@ static PetscErrorCode dataset(int64_t loc, const H5Label *label, hid_t filetype,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* rows x cols (cols 0: a plain list). */
+static PetscErrorCode dataset(int64_t loc, const H5Label *label, hid_t filetype, hid_t memtype, PetscInt rows, PetscInt cols,
+                              const void *data)
+{
+  const hsize_t dims[2] = {(hsize_t)rows, (hsize_t)cols};
+
+  PetscFunctionBegin;
+  PetscCall(dataset_shape(loc, label, filetype, memtype, cols ? 2 : 1, dims, data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AppH5Real(int64_t loc, const H5Label *label, PetscBool single, PetscInt rows, PetscInt cols, const PetscReal *data)
 {
   PetscFunctionBegin;
   PetscCall(dataset(loc, label, single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE,
                     sizeof(PetscReal) == sizeof(double) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, rows, cols, data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Values on points[0] x points[1] x points[2] points, x fastest, of cols components each; stored in single precision. */
+PetscErrorCode AppH5Grid(int64_t loc, const H5Label *label, const PetscInt points[3], PetscInt cols, const PetscReal *data)
+{
+  const hsize_t dims[4] = {(hsize_t)points[2], (hsize_t)points[1], (hsize_t)points[0], (hsize_t)cols};
+
+  PetscFunctionBegin;
+  PetscCall(dataset_shape(loc, label, H5T_IEEE_F32LE, sizeof(PetscReal) == sizeof(double) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT,
+                          cols > 1 ? 4 : 3, dims, data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

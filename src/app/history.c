@@ -234,6 +234,7 @@ PetscErrorCode AppHistoryRecord(AppHistory h, App *app, PetscReal dt)
   PetscCall(put_beams(h, app));
   PetscCall(put_bodies(h, app));
   PetscCall(put_fluid(h, app));
+  PetscCall(AppProbesPut(app, put, h));
   for (PetscInt c = 0; c < h->ncols; c++)
     PetscCheck(!PetscIsInfOrNanReal(h->row[c]), PETSC_COMM_SELF, PETSC_ERR_FP,
                "%s is not finite at step %" PetscInt_FMT ", time %g s", h->column[c].name, app->step, (double)app->t);

@@ -2,7 +2,8 @@
   output.c - the frames of a run: one HDF5 file each, written under another name and then put in its place, so that
   whatever happens later every frame on disk is whole.
 
-  frame_NNNNN.h5: attributes time (s), step, scene; groups /markers, /beams/<name>/{nodes,line}, /bodies. Every dataset has the
+  frame_NNNNN.h5: attributes time (s), step, scene; groups /markers, /beams/<name>/{nodes,line}, /bodies,
+  /grids/<name>. Every dataset has the
   attributes unit and description.
 */
 #include "app.h"
@@ -294,6 +295,7 @@ static PetscErrorCode write_frame(AppOutput out, App *app, int64_t file)
     PetscCall(AppH5GroupClose(g));
   }
   if (app->rigid) PetscCall(write_bodies(out, app, file));
+  PetscCall(AppGridsWrite(app, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

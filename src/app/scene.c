@@ -273,6 +273,7 @@ static PetscErrorCode read_structures(AppScene *s)
   PetscCall(PetscCalloc1((size_t)(bodies.n + trunks), &s->bodies));
   PetscCall(read_bodies(s, &bodies, help));
   PetscCall(AppSceneReadJoints(s));
+  PetscCall(AppSceneReadProbes(s));
   PetscCall(PetscFree(beams.name));
   PetscCall(PetscFree(bodies.name));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -365,5 +366,7 @@ PetscErrorCode AppSceneDestroy(AppScene *s)
   PetscCall(PetscFree(s->bodies));
   PetscCall(PetscFree(s->lumped));
   PetscCall(PetscFree(s->joints));
+  PetscCall(PetscFree(s->grids));
+  PetscCall(PetscFree(s->probes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
 /*
   xdmf.c - run.xdmf, the index by which ParaView opens the frames: at each time the markers as points, every beam's
-  centre line as a polyline, and the bodies as points. The file is written anew beside the old one and then put in
+  centre line as a polyline, the bodies as points, and every grid. The file is written anew beside the old one and then put in
   its place, so that a killed run leaves a whole file.
 */
 #include "app.h"
@@ -63,6 +63,28 @@ static void grid(FILE *f, const char frame[], const char group[], const char nam
   fprintf(f, "   </Grid>\n");
 }
 
+/* A regular grid of points: a structured block that ParaView can contour, slice and draw glyphs on. */
+static void regular(FILE *f, const char frame[], const SceneGrid *g)
+{
+  static const char *const fields[] = {"velocity", "pressure", "density", "fraction"};
+  const int n[3] = {(int)g->n[2], (int)g->n[1], (int)g->n[0]};
+
+  fprintf(f,
+          "   <Grid Name=\"%s\" GridType=\"Uniform\">\n    <Topology TopologyType=\"3DCORECTMesh\" Dimensions=\"%d %d %d\"/>\n",
+          g->name, n[0], n[1], n[2]);
+  fprintf(f,
+          "    <Geometry GeometryType=\"ORIGIN_DXDYDZ\"><DataItem Format=\"XML\" Dimensions=\"3\">%.15g %.15g %.15g</DataItem>",
+          (double)g->lo[2], (double)g->lo[1], (double)g->lo[0]);
+  fprintf(f, "<DataItem Format=\"XML\" Dimensions=\"3\">%.15g %.15g %.15g</DataItem></Geometry>\n", (double)AppGridStep(g, 2),
+          (double)AppGridStep(g, 1), (double)AppGridStep(g, 0));
+  for (int i = 0; i < 4; i++)
+    fprintf(f,
+            "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem Format=\"HDF\" NumberType=\"Float\" "
+            "Precision=\"4\" Dimensions=\"%d %d %d%s\">%s:/grids/%s/%s</DataItem></Attribute>\n",
+            fields[i], i ? "Scalar" : "Vector", n[0], n[1], n[2], i ? "" : " 3", frame, g->name, fields[i]);
+  fprintf(f, "   </Grid>\n");
+}
+
 /* Write run.xdmf in dir for all frames so far. */
 PetscErrorCode AppXdmfWrite(const char dir[], const XdmfSeries *series)
 {
@@ -92,6 +114,7 @@ PetscErrorCode AppXdmfWrite(const char dir[], const XdmfSeries *series)
       grid(f, frame, group, app->scene.beams[b].name, PETSC_TRUE, series->points[b], 3, beam_fields, NULL);
     }
     if (app->rigid) grid(f, frame, "bodies", "bodies", PETSC_FALSE, app->scene.nbodies, 2, body_fields, NULL);
+    for (PetscInt i = 0; i < app->scene.ngrids; i++) regular(f, frame, &app->scene.grids[i]);
     fprintf(f, "  </Grid>\n");
   }
   fprintf(f, " </Grid>\n </Domain>\n</Xdmf>\n");
