@@ -167,6 +167,8 @@ FROND_EXTERN PetscErrorCode CoupleSaveState(Couple couple, CoupleState *state);
   saving. state: saved.
 */
 FROND_EXTERN PetscErrorCode CoupleRestoreState(Couple couple, CoupleState state);
+/* The same state as named arrays, see frondstate.h. state: loaded into a coupling set up for the same scene. */
+FROND_EXTERN PetscErrorCode CoupleMoveState(Couple couple, FrondState *state);
 /* Free a saved state. state: becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleStateDestroy(CoupleState *state);
 

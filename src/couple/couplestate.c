@@ -2,10 +2,8 @@
 #include "coupleimpl.h"
 
 struct _p_CoupleState {
-  size_t bytes, cap; /* fluid */
-  void *fluid;
-  PetscInt n, ncap; /* surfaces and balance */
-  PetscReal *real;
+  size_t bytes, cap;
+  void *p;
 };
 
 PetscErrorCode CoupleAdvance(Couple c, PetscReal tend)
@@ -36,100 +34,91 @@ PetscErrorCode CoupleGetMarkers(Couple c, PetscInt i, PetscInt *n, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-typedef struct {
-  PetscReal *p;
-  PetscInt at;
-  enum { WAY_COUNT, WAY_SAVE, WAY_LOAD } way;
-} Cursor;
-
-static void Move(Cursor *b, PetscReal *x, PetscInt n)
+/* What a surface remembers, and its structure. */
+static PetscErrorCode MoveSurface(Couple c, PetscInt i, FrondState *state)
 {
-  for (PetscInt i = 0; i < n && b->way != WAY_COUNT; i++) {
-    if (b->way == WAY_SAVE)
-      b->p[b->at + i] = x[i];
-    else
-      x[i] = b->p[b->at + i];
-  }
-  b->at += n;
-}
-
-/* The one list of what the coupling itself remembers. */
-static PetscErrorCode MoveCouple(Couple c, Cursor *b)
-{
-  PetscReal left = (PetscReal)c->left;
+  CoupleSlot *s = &c->slot[i];
+  CoupleSurface surface = s->surface;
+  char name[128];
+  PetscReal *x = NULL;
+  PetscInt n;
 
   PetscFunctionBegin;
-  Move(b, &left, 1);
-  c->left = (PetscInt)left;
-  Move(b, &c->mass, 1);
-  Move(b, c->p0, 3);
-  Move(b, c->balance.body, 3);
-  Move(b, c->balance.support, 3);
-  Move(b, c->balance.wall, 3);
-  for (PetscInt i = 0; i < c->n; i++) {
-    CoupleSlot *s = &c->slot[i];
-    CoupleSurface surface = s->surface;
-    PetscInt n;
-    Move(b, (PetscReal *)&s->audit, (PetscInt)(sizeof(s->audit) / sizeof(PetscReal)));
-    Move(b, s->f, 3 * s->n);
-    PetscCheck(surface->ops.statesize, c->comm, PETSC_ERR_SUP,
-               "surface %s cannot save its state: its CoupleSurfaceOps have no statesize, save and load", surface->name);
-    PetscCall((*surface->ops.statesize)(surface, &n));
-    if (b->way == WAY_SAVE) PetscCall((*surface->ops.save)(surface, b->p + b->at));
-    if (b->way == WAY_LOAD) PetscCall((*surface->ops.load)(surface, b->p + b->at));
-    b->at += n;
-  }
+  PetscCheck(surface->ops.statesize, c->comm, PETSC_ERR_SUP,
+             "surface %s cannot save its state: its CoupleSurfaceOps have no statesize, save and load", surface->name);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "couple/surface_%" PetscInt_FMT "/audit", i));
+  FrondMoveReal(state, name, (PetscReal *)&s->audit, sizeof(s->audit) / sizeof(PetscReal));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "couple/surface_%" PetscInt_FMT "/force", i));
+  FrondMoveReal(state, name, s->f, 3 * s->n);
+  PetscCall((*surface->ops.statesize)(surface, &n));
+  if (state->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
+  if (state->way == FROND_STATE_SAVE) PetscCall((*surface->ops.save)(surface, x));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "couple/surface_%" PetscInt_FMT "/state", i));
+  FrondMoveReal(state, name, x, n);
+  if (state->way == FROND_STATE_LOAD) PetscCall((*surface->ops.load)(surface, x));
+  PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Reserve(Couple c, CoupleState s)
+/*@
+  CoupleMoveState - The one list of what makes up the coupled system between two steps, see frondstate.h: fluid, structures, and
+  what the coupling itself remembers.
+@*/
+PetscErrorCode CoupleMoveState(Couple c, FrondState *s)
 {
-  Cursor count = {NULL, 0, WAY_COUNT};
+  const PetscInt n0 = c->n;
+  PetscInt n = n0;
 
   PetscFunctionBegin;
-  PetscCall(SphGetStateSize(c->sph, &s->bytes));
-  PetscCall(MoveCouple(c, &count));
-  s->n = count.at;
-  if (s->bytes > s->cap) {
-    PetscCall(PetscFree(s->fluid));
-    s->cap = s->bytes + s->bytes / 16;
-    PetscCall(PetscMalloc(s->cap, &s->fluid));
-  }
-  if (s->n > s->ncap) {
-    PetscCall(PetscFree(s->real));
-    s->ncap = s->n;
-    PetscCall(PetscMalloc1(s->ncap, &s->real));
-  }
+  PetscCheck(c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetUp() must come before CoupleMoveState()");
+  PetscCall(SphMoveState(c->sph, s));
+  FrondMoveInt(s, "couple/surfaces", &n, 1);
+  PetscCheck(n == n0, c->comm, PETSC_ERR_ARG_SIZ,
+             "the saved coupling has %" PetscInt_FMT " surfaces, this one %" PetscInt_FMT, n, n0);
+  FrondMoveInt(s, "couple/left", &c->left, 1);
+  FrondMoveInt(s, "couple/iterations", &c->iterations, 1);
+  FrondMoveInt(s, "couple/unconverged", &c->unconverged, 1);
+  FrondMoveReal(s, "couple/fluid_mass", &c->mass, 1);
+  FrondMoveReal(s, "couple/momentum_start", c->p0, 3);
+  FrondMoveReal(s, "couple/impulse_body", c->balance.body, 3);
+  FrondMoveReal(s, "couple/impulse_support", c->balance.support, 3);
+  FrondMoveReal(s, "couple/impulse_wall", c->balance.wall, 3);
+  for (PetscInt i = 0; i < c->n; i++) PetscCall(MoveSurface(c, i, s));
+  if (s->way == FROND_STATE_LOAD) PetscCall(CoupleMoveMarkers(c, 0.0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CoupleSaveState(Couple c, CoupleState *state)
 {
-  Cursor save = {NULL, 0, WAY_SAVE};
+  FrondStateBuffer count = FrondStateBufferMake(FROND_STATE_COUNT, 0, NULL), save;
+  CoupleState s;
 
   PetscFunctionBegin;
   PetscCheck(c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetUp() must come before CoupleSaveState()");
   if (!*state) PetscCall(PetscNew(state));
-  PetscCall(Reserve(c, *state));
-  save.p = (*state)->real;
-  PetscCall(SphSaveState(c->sph, (*state)->bytes, (*state)->fluid));
-  PetscCall(MoveCouple(c, &save));
+  s = *state;
+  PetscCall(CoupleMoveState(c, &count.state));
+  s->bytes = count.at;
+  if (s->bytes > s->cap) {
+    PetscCall(PetscFree(s->p));
+    s->cap = s->bytes + s->bytes / 16;
+    PetscCall(PetscMalloc(s->cap, &s->p));
+  }
+  save = FrondStateBufferMake(FROND_STATE_SAVE, s->bytes, s->p);
+  PetscCall(CoupleMoveState(c, &save.state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode CoupleRestoreState(Couple c, CoupleState s)
 {
-  Cursor load = {NULL, 0, WAY_LOAD}, count = {NULL, 0, WAY_COUNT};
+  FrondStateBuffer load;
 
   PetscFunctionBegin;
   PetscCheck(s, c->comm, PETSC_ERR_ARG_NULL, "CoupleRestoreState() needs a state made by CoupleSaveState()");
-  PetscCall(MoveCouple(c, &count));
-  PetscCheck(count.at == s->n, c->comm, PETSC_ERR_ARG_SIZ,
-             "the saved state has %" PetscInt_FMT " numbers of structures, this coupling %" PetscInt_FMT, s->n, count.at);
-  load.p = s->real;
-  PetscCall(SphRestoreState(c->sph, s->bytes, s->fluid));
-  PetscCall(MoveCouple(c, &load));
-  PetscCall(CoupleMoveMarkers(c, 0.0));
+  load = FrondStateBufferMake(FROND_STATE_LOAD, s->bytes, s->p);
+  PetscCall(CoupleMoveState(c, &load.state));
+  PetscCheck(load.at == s->bytes, c->comm, PETSC_ERR_ARG_SIZ, "the saved state has %zu bytes, this coupling's %zu", s->bytes,
+             load.at);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,8 +126,7 @@ PetscErrorCode CoupleStateDestroy(CoupleState *state)
 {
   PetscFunctionBegin;
   if (!*state) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*state)->fluid));
-  PetscCall(PetscFree((*state)->real));
+  PetscCall(PetscFree((*state)->p));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

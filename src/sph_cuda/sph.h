@@ -12,7 +12,7 @@
 #ifndef SPH_H
 #define SPH_H
 
-#include "frondsys.h"
+#include "frondstate.h"
 #include <petscviewer.h>
 
 /* The fluid and all markers. */
@@ -279,6 +279,9 @@ FROND_EXTERN PetscErrorCode SphGetStateSize(Sph sph, size_t *bytes);
 FROND_EXTERN PetscErrorCode SphSaveState(Sph sph, size_t bytes, void *buffer);
 /* Go back to a saved state. bytes: length of the buffer. buffer: what SphSaveState() wrote. */
 FROND_EXTERN PetscErrorCode SphRestoreState(Sph sph, size_t bytes, const void *buffer);
+
+/* The same state as named arrays that every backend reads, see frondstate.h. */
+FROND_EXTERN PetscErrorCode SphMoveState(Sph sph, FrondState *state);
 
 /* Sums over fluid markers: mass (kg), linear momentum (kg m/s), kinetic energy (J), max speed (m/s), max |rho/rho0-1|. */
 typedef struct {

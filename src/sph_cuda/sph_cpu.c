@@ -121,7 +121,7 @@ static PetscErrorCode Build_CPU(Sph sph)
   PetscCall(SizeLists(sph, cpu));
   cpu->moved = 0.0;
   PetscCall(PetscArrayzero(cpu->gmoved, PetscMax(1, sph->ngroups)));
-  if (!cpu->built) PetscCall(SphCheckOverlap(sph, &cpu->grid, cpu->cellstart));
+  if (!cpu->built && !sph->step) PetscCall(SphCheckOverlap(sph, &cpu->grid, cpu->cellstart));
   cpu->built = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -316,25 +316,32 @@ static PetscErrorCode Push_CPU(Sph sph)
   return PETSC_SUCCESS;
 }
 
-/* Grid, cell ranges, and how far markers have moved since these were made. */
-static PetscErrorCode State_CPU(Sph sph, SphBuffer *b)
+/* Grid, cell ranges, and how far markers have moved since these were made. A state of another backend has none of it. */
+static PetscErrorCode State_CPU(Sph sph, FrondState *s)
 {
   SphCpu *cpu = (SphCpu *)sph->data;
   PetscInt nstart = cpu->built ? 2 * (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2] + 2 : 0;
+  const PetscBool load = s->way == FROND_STATE_LOAD ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool there = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(SphBufferMove(b, &cpu->built, sizeof(cpu->built)));
-  PetscCall(SphBufferMove(b, &cpu->grid, sizeof(cpu->grid)));
-  PetscCall(SphBufferMove(b, &nstart, sizeof(nstart)));
-  if (b->way == SPH_BUFFER_LOAD && nstart > cpu->cellcap) {
+  if (load) PetscCall((*s->has)(s, "fluid/search_cpu/built", &there));
+  if (!there) {
+    PetscCall(Push_CPU(sph));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  FrondMoveInt32(s, "fluid/search_cpu/built", &cpu->built, 1);
+  PetscCall(SphMoveGrid(s, "fluid/search_cpu", &cpu->grid));
+  FrondMoveInt(s, "fluid/search_cpu/ranges", &nstart, 1);
+  if (load && nstart > cpu->cellcap) {
     cpu->cellcap = nstart;
     PetscCall(PetscFree(cpu->cellstart));
     PetscCall(PetscMalloc1(nstart, &cpu->cellstart));
   }
-  PetscCall(SphBufferMove(b, cpu->cellstart, (size_t)nstart * sizeof(int)));
-  PetscCall(SphBufferMove(b, &cpu->moved, sizeof(cpu->moved)));
-  PetscCall(SphBufferMove(b, cpu->gmoved, (size_t)sph->ngroups * sizeof(double)));
-  if (b->way == SPH_BUFFER_LOAD && nstart) PetscCall(SizeLists(sph, cpu));
+  FrondMoveInt32(s, "fluid/search_cpu/start", cpu->cellstart, nstart);
+  FrondMoveReal(s, "fluid/search_cpu/moved", &cpu->moved, 1);
+  FrondMoveReal(s, "fluid/search_cpu/group_moved", cpu->gmoved, sph->ngroups);
+  if (load && nstart) PetscCall(SizeLists(sph, cpu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

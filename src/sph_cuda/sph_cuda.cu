@@ -338,26 +338,35 @@ static PetscErrorCode Rates_CUDA(Sph sph)
 
 /* The search structure of sphstate.c: grid, keys and the positions they were made at. After a load the device has all of the
  * state. */
-static PetscErrorCode State_CUDA(Sph sph, SphBuffer *b)
+static PetscErrorCode State_CUDA(Sph sph, FrondState *s)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
   const size_t n = (size_t)sph->n, nd = n * sizeof(double), nk = n * sizeof(unsigned);
-  const int load = b->way == SPH_BUFFER_LOAD;
-  PetscBool built = cuda->built;
+  const int load = s->way == FROND_STATE_LOAD;
+  PetscBool built = cuda->built, there = PETSC_TRUE;
+  const char *const name[] = {"fluid/search_cuda/x", "fluid/search_cuda/y", "fluid/search_cuda/z"};
   double *x[3];
   unsigned *key;
 
   PetscFunctionBegin;
-  PetscCall(SphBufferMove(b, &built, sizeof(built)));
-  PetscCall(SphBufferMove(b, &cuda->grid, sizeof(cuda->grid)));
+  if (load) {
+    PetscCall((*s->has)(s, "fluid/search_cuda/built", &there));
+    cuda->forcecurrent = PETSC_FALSE;
+  }
+  if (!there) { /* a state of the other backend */
+    PetscCall(Push_CUDA(sph));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  FrondMoveInt32(s, "fluid/search_cuda/built", &built, 1);
+  PetscCall(SphMoveGrid(s, "fluid/search_cuda", &cuda->grid));
   PetscCall(PetscMalloc4(n, &x[0], n, &x[1], n, &x[2], n, &key));
-  if (!load) {
+  if (s->way == FROND_STATE_SAVE) {
     for (int k = 0; k < 3; k++) SphCallCUDA(cudaMemcpyAsync(x[k], cuda->d.xref[k], nd, cudaMemcpyDeviceToHost, cuda->stream));
     SphCallCUDA(cudaMemcpyAsync(key, cuda->d.key, nk, cudaMemcpyDeviceToHost, cuda->stream));
     SphCallCUDA(cudaStreamSynchronize(cuda->stream));
   }
-  for (int k = 0; k < 3; k++) PetscCall(SphBufferMove(b, x[k], nd));
-  PetscCall(SphBufferMove(b, key, nk));
+  for (int k = 0; k < 3; k++) FrondMoveReal(s, name[k], x[k], n);
+  FrondMoveInt32(s, "fluid/search_cuda/key", key, n);
   if (load) {
     PetscCall(Push_CUDA(sph));
     for (int k = 0; k < 3; k++) SphCallCUDA(cudaMemcpyAsync(cuda->d.xref[k], x[k], nd, cudaMemcpyHostToDevice, cuda->stream));
@@ -365,7 +374,6 @@ static PetscErrorCode State_CUDA(Sph sph, SphBuffer *b)
     if (built) PetscCall(SphCudaRanges(cuda));
     SphCallCUDA(cudaStreamSynchronize(cuda->stream));
     cuda->built = built;
-    cuda->forcecurrent = PETSC_FALSE;
   }
   PetscCall(PetscFree4(x[0], x[1], x[2], key));
   PetscFunctionReturn(PETSC_SUCCESS);

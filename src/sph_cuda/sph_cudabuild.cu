@@ -262,7 +262,7 @@ PetscErrorCode SphCudaBuild(Sph sph)
   PetscCall(PermuteAll(cuda, sph->par.integrator == SPH_INTEGRATOR_VERLET ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(SphCudaRanges(cuda));
   cuda->hostcurrent = PETSC_FALSE;
-  if (!cuda->built) PetscCall(CheckOverlap(sph, cuda));
+  if (!cuda->built && !sph->step) PetscCall(CheckOverlap(sph, cuda));
   cuda->built = PETSC_TRUE;
   PetscCall(SphCudaStageEnd(cuda));
   PetscFunctionReturn(PETSC_SUCCESS);

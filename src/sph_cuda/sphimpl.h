@@ -65,28 +65,6 @@ typedef struct {
   double *ds;    /* d(rho/rho0)/dt, 1/s */
 } SphRates;
 
-/* A state on its way into a buffer or out of it; counting only when there is none (sphstate.c). */
-typedef enum { SPH_BUFFER_COUNT, SPH_BUFFER_SAVE, SPH_BUFFER_LOAD } SphBufferWay;
-typedef struct {
-  char *p;
-  size_t size, at; /* bytes */
-  SphBufferWay way;
-} SphBuffer;
-static inline PetscErrorCode SphBufferMove(SphBuffer *b, void *data, size_t bytes)
-{
-  PetscFunctionBegin;
-  if (b->way != SPH_BUFFER_COUNT) {
-    PetscCheck(b->at + bytes <= b->size, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
-               "the buffer of a fluid state has %zu bytes; it needs more", b->size);
-    if (b->way == SPH_BUFFER_SAVE)
-      memcpy(b->p + b->at, data, bytes);
-    else
-      memcpy(data, b->p + b->at, bytes);
-  }
-  b->at += bytes;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 typedef struct _SphOps {
   PetscErrorCode (*setup)(Sph);
   PetscErrorCode (*build)(Sph);                  /* sort markers and find cell ranges when needed */
@@ -101,8 +79,8 @@ typedef struct _SphOps {
   PetscErrorCode (*push)(Sph); /* host arrays changed */
   PetscErrorCode (*destroy)(Sph);
   PetscErrorCode (*check)(Sph); /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
-  PetscErrorCode (*state)(Sph,
-                          SphBuffer *); /* move the search structure; NULL: it is built anew when a state is saved or restored */
+  PetscErrorCode (*state)(Sph, FrondState *); /* move the search structure, and all of the state to the device when loading; NULL:
+                                                 it is built anew when a state is saved or restored */
 } SphOps;
 
 struct _p_Sph {
@@ -154,6 +132,9 @@ extern PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *grid);
 extern PetscErrorCode SphSortMarkers(Sph sph, const SphGrid *grid, int **cellstart, PetscInt *cellcap,
                                      void *scratch); /* scratch: 12 n bytes, for doubles */
 extern PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *grid, const int *cellstart);
+
+/* sphstate.c: the grid of a search structure, as arrays below the name `search`. */
+extern PetscErrorCode SphMoveGrid(FrondState *s, const char search[], SphGrid *grid);
 
 /* Whether the velocity that moves densities differs from that of the viscous term: XSPH, or extrapolated wall velocities. */
 static inline int SphTwoVelocities(const SphParams *p)

@@ -1,63 +1,10 @@
 /*
-  sphstate.c - the whole state of the fluid in one buffer, and back: rollback of a step, restart.
+  sphstate.c - the whole state of the fluid and back: rollback of a step, checkpoints.
 
   Everything that the next step depends on, in the order of the arrays: sums over neighbours then run in the same order and
-  give the same bits. A backend without an operation of its own for its search structure makes that anew after a save as well as
-  after a restore, from the same arrays.
+  give the same bits. A backend's search structure goes along; another backend that reads the state makes its own anew.
 */
 #include "sphimpl.h"
-
-#define Move(b, x) PetscCall(SphBufferMove(b, &(x), sizeof(x)))
-#define MoveArray(b, x, n) PetscCall(SphBufferMove(b, x, (size_t)(n) * sizeof(*(x))))
-
-static PetscErrorCode MoveState(Sph sph, SphState *st, SphBuffer *b)
-{
-  PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) {
-    MoveArray(b, st->x[k], sph->n);
-    MoveArray(b, st->v[k], sph->n);
-  }
-  MoveArray(b, st->s, sph->n);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The one list of what makes up the state. */
-static PetscErrorCode MoveAll(Sph sph, SphBuffer *b)
-{
-  const PetscInt n0 = sph->n, g0 = sph->ngroups;
-  PetscInt n = n0, groups = g0;
-
-  PetscFunctionBegin;
-  Move(b, n);
-  Move(b, groups);
-  PetscCheck(n == n0 && groups == g0, sph->comm, PETSC_ERR_ARG_SIZ,
-             "the saved fluid has %" PetscInt_FMT " markers in %" PetscInt_FMT " groups, this one %" PetscInt_FMT
-             " in %" PetscInt_FMT,
-             n, groups, n0, g0);
-  Move(b, sph->t);
-  Move(b, sph->dt);
-  Move(b, sph->step);
-  Move(b, sph->left);
-  Move(b, sph->verletstep);
-  Move(b, sph->dtold);
-  Move(b, sph->verletspan);
-  Move(b, sph->evaluations);
-  PetscCall(MoveState(sph, &sph->st, b));
-  PetscCall(MoveState(sph, &sph->stn, b));
-  for (int k = 0; k < 3; k++) {
-    MoveArray(b, sph->rate.a[k], n);
-    MoveArray(b, sph->rate.dv[k], n);
-    MoveArray(b, sph->ab[k], n);
-  }
-  MoveArray(b, sph->rate.ds, n);
-  MoveArray(b, sph->m, n);
-  MoveArray(b, sph->wallratio, n);
-  MoveArray(b, sph->group, n);
-  MoveArray(b, sph->id, n);
-  MoveArray(b, sph->slot, n);
-  if (sph->ops->state) PetscCall((*sph->ops->state)(sph, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode CheckReady(Sph sph, const char *function)
 {
@@ -67,37 +14,136 @@ static PetscErrorCode CheckReady(Sph sph, const char *function)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphGetStateSize(Sph sph, size_t *bytes)
+static PetscErrorCode MoveCounts(Sph sph, FrondState *s)
 {
-  SphBuffer b = {NULL, 0, 0, SPH_BUFFER_COUNT};
+  const PetscInt n0 = sph->n, g0 = sph->ngroups;
+  PetscInt n = n0, groups = g0;
 
   PetscFunctionBegin;
-  PetscCall(CheckReady(sph, "SphGetStateSize"));
-  PetscCall(MoveAll(sph, &b));
+  FrondMoveInt(s, "fluid/markers", &n, 1);
+  FrondMoveInt(s, "fluid/groups", &groups, 1);
+  PetscCheck(n == n0 && groups == g0, sph->comm, PETSC_ERR_ARG_SIZ,
+             "the saved fluid has %" PetscInt_FMT " markers in %" PetscInt_FMT " groups, this one %" PetscInt_FMT
+             " in %" PetscInt_FMT,
+             n, groups, n0, g0);
+  FrondMoveReal(s, "fluid/time", &sph->t, 1);
+  FrondMoveReal(s, "fluid/dt", &sph->dt, 1);
+  FrondMoveInt(s, "fluid/step", &sph->step, 1);
+  FrondMoveInt(s, "fluid/left", &sph->left, 1);
+  FrondMoveReal(s, "fluid/evaluations", &sph->evaluations, 1);
+  FrondMoveReal(s, "fluid/speed_warned", &sph->speedwarned, 1);
+  FrondMoveInt32(s, "fluid/step_warned", &sph->fixedwarned, 1);
+  FrondMoveInt(s, "fluid/verlet_step", &sph->verletstep, 1);
+  FrondMoveReal(s, "fluid/verlet_dt", &sph->dtold, 1);
+  FrondMoveReal(s, "fluid/verlet_span", &sph->verletspan, 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nothing is loaded into the array of zeros that stands for those that no term reads. */
+static PetscErrorCode MoveArray(Sph sph, FrondState *s, const char name[], double *x)
+{
+  double *skip = NULL;
+
+  PetscFunctionBegin;
+  if (s->way == FROND_STATE_LOAD && x == sph->zero) {
+    PetscCall(PetscMalloc1(sph->n, &skip));
+    x = skip;
+  }
+  FrondMoveReal(s, name, x, sph->n);
+  PetscCall(PetscFree(skip));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MoveVector(Sph sph, FrondState *s, const char stem[], double *const x[3])
+{
+  char name[64];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%s_%c", stem, "xyz"[k]));
+    PetscCall(MoveArray(sph, s, name, x[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SphMoveState - The one list of what makes up the state of the fluid, between two steps; see frondstate.h.
+
+  Errors: inside a step; PETSC_ERR_ARG_SIZ when the state loaded is not of this many markers and groups.
+@*/
+PetscErrorCode SphMoveState(Sph sph, FrondState *s)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckReady(sph, "SphMoveState"));
+  if (s->way != FROND_STATE_COUNT) PetscCall((*sph->ops->pull)(sph));
+  PetscCall(MoveCounts(sph, s));
+  PetscCall(MoveVector(sph, s, "position", sph->st.x));
+  PetscCall(MoveVector(sph, s, "velocity", sph->st.v));
+  PetscCall(MoveArray(sph, s, "fluid/compression", sph->st.s));
+  if (sph->par.integrator == SPH_INTEGRATOR_VERLET) { /* the others begin each step from the state alone */
+    PetscCall(MoveVector(sph, s, "old_velocity", sph->stn.v));
+    PetscCall(MoveArray(sph, s, "fluid/old_compression", sph->stn.s));
+  }
+  PetscCall(MoveVector(sph, s, "acceleration", sph->rate.a));
+  PetscCall(MoveVector(sph, s, "xsph_velocity", sph->rate.dv));
+  PetscCall(MoveArray(sph, s, "fluid/compression_rate", sph->rate.ds));
+  PetscCall(MoveVector(sph, s, "boundary_acceleration", sph->ab));
+  PetscCall(MoveArray(sph, s, "fluid/mass", sph->m));
+  PetscCall(MoveArray(sph, s, "fluid/wall_ratio", sph->wallratio));
+  FrondMoveInt32(s, "fluid/group", sph->group, sph->n);
+  FrondMoveInt32(s, "fluid/id", sph->id, sph->n);
+  FrondMoveInt32(s, "fluid/slot", sph->slot, sph->n);
+  if (sph->ops->state) PetscCall((*sph->ops->state)(sph, s));
+  if (!sph->ops->state && s->way != FROND_STATE_COUNT) PetscCall((*sph->ops->push)(sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphMoveGrid(FrondState *s, const char search[], SphGrid *g)
+{
+  double real[9];
+  int number[6];
+  char name[64];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    real[k] = g->lo[k], real[3 + k] = g->edge[k], real[6 + k] = g->length[k];
+    number[k] = g->n[k], number[3 + k] = g->periodic[k];
+  }
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/grid", search));
+  FrondMoveReal(s, name, real, 9);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/cells", search));
+  FrondMoveInt32(s, name, number, 6);
+  for (int k = 0; k < 3 && s->way == FROND_STATE_LOAD; k++) {
+    g->lo[k] = real[k], g->edge[k] = real[3 + k], g->length[k] = real[6 + k];
+    g->n[k] = number[k], g->periodic[k] = number[3 + k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphGetStateSize(Sph sph, size_t *bytes)
+{
+  FrondStateBuffer b = FrondStateBufferMake(FROND_STATE_COUNT, 0, NULL);
+
+  PetscFunctionBegin;
+  PetscCall(SphMoveState(sph, &b.state));
   *bytes = b.at;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SphSaveState(Sph sph, size_t bytes, void *buffer)
 {
-  SphBuffer b = {(char *)buffer, bytes, 0, SPH_BUFFER_SAVE};
+  FrondStateBuffer b = FrondStateBufferMake(FROND_STATE_SAVE, bytes, buffer);
 
   PetscFunctionBegin;
-  PetscCall(CheckReady(sph, "SphSaveState"));
-  PetscCall((*sph->ops->pull)(sph));
-  PetscCall(MoveAll(sph, &b));
-  if (!sph->ops->state) PetscCall((*sph->ops->push)(sph));
+  PetscCall(SphMoveState(sph, &b.state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SphRestoreState(Sph sph, size_t bytes, const void *buffer)
 {
-  SphBuffer b = {(char *)(size_t)buffer, bytes, 0, SPH_BUFFER_LOAD};
+  FrondStateBuffer b = FrondStateBufferMake(FROND_STATE_LOAD, bytes, (void *)(size_t)buffer);
 
   PetscFunctionBegin;
-  PetscCall(CheckReady(sph, "SphRestoreState"));
-  PetscCall((*sph->ops->pull)(sph));
-  PetscCall(MoveAll(sph, &b));
-  if (!sph->ops->state) PetscCall((*sph->ops->push)(sph));
+  PetscCall(SphMoveState(sph, &b.state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
