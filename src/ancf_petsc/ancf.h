@@ -10,7 +10,7 @@
 #ifndef ANCF_H
 #define ANCF_H
 
-#include "frondsys.h"
+#include "frondstate.h"
 #include <petscts.h>
 
 /* Beams and their solver. */
@@ -174,7 +174,19 @@ FROND_EXTERN PetscErrorCode AncfSaveState(Ancf ancf);
 /* Back to the time of AncfSaveState(), as often as wanted. */
 FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
 /*
-  For checkpoints: the acceleration that alpha2 carries from step to step. Without it alpha2 starts from the acceleration of
+  All that the beams carry from step to step. A run that goes on from an unpacked state has the bits of the one that was
+  packed; that one is not changed by AncfPack() with the types alpha2, beuler, cn, euler and basicsymplectic and steps of given
+  size, while the others begin anew (multistep methods at first order). n: reals.
+*/
+FROND_EXTERN PetscErrorCode AncfGetPackSize(Ancf ancf, PetscInt *n);
+/* Pack, see AncfGetPackSize(), whose number of reals this takes; not between AncfGetLoadsEnd() and the end of the step. state: filled. */
+FROND_EXTERN PetscErrorCode AncfPack(Ancf ancf, PetscReal state[]);
+/* Back to a packed state. state: from AncfPack() of the same beams. */
+FROND_EXTERN PetscErrorCode AncfUnpack(Ancf ancf, const PetscReal state[]);
+/* The packed state and the counts of steps and iterations as named arrays, see frondstate.h. state: saved to or loaded from. */
+FROND_EXTERN PetscErrorCode AncfMoveState(Ancf ancf, FrondState *state);
+/*
+  For checkpoints of an own making: the acceleration that alpha2 carries from step to step. Without it alpha2 starts from the acceleration of
   the equations of motion. A: nodes x 6, borrowed; NULL for other types.
 */
 FROND_EXTERN PetscErrorCode AncfGetHistory(Ancf ancf, const PetscReal **A);

@@ -118,12 +118,12 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   } else
     PetscCall(TSSetMaxTime(ancf->ts, t));
   PetscCall(TSSolve(ancf->ts, NULL));
-  if (ancf->form == ANCF_FORM_SYMPLECTIC) PetscCall(TSSetTime(ancf->ts, t));
   PetscCall(TSGetConvergedReason(ancf->ts, &reason));
   if (reason < 0) PetscCall(AncfFail(ancf, t0, reason));
+  PetscCall(TSSetTime(ancf->ts, t)); /* sums of steps may be off by round-off */
   PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));
   PetscCall(AncfTSPull(ancf));
-  PetscCall(AncfMoveState(ancf, t));
+  PetscCall(AncfMoveNodes(ancf, t));
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
   if (ierr) PetscCall(AncfStateLoad(ancf, t0, ancf->backup));

@@ -43,6 +43,7 @@ static PetscErrorCode AncfGroupCreate(Ancf ancf, PetscInt first, PetscInt last, 
   g->mass += 8 * node;
   if (ancf->history) {
     g->history += 6 * node;
+    g->eprev += 6 * node;
     g->vprev += 6 * node;
   }
   PetscCall(AncfSetUpBatches(g));
@@ -67,7 +68,8 @@ PetscErrorCode AncfGroupSetUp(Ancf ancf)
 
   PetscFunctionBegin;
   PetscCall(AncfChooseForm(ancf));
-  if (ancf->form == ANCF_FORM_SECOND) PetscCall(PetscCalloc2(6 * ancf->nnodes, &ancf->history, 6 * ancf->nnodes, &ancf->vprev));
+  if (ancf->form == ANCF_FORM_SECOND) 
+    PetscCall(PetscCalloc3(6 * ancf->nnodes, &ancf->history, 6 * ancf->nnodes, &ancf->eprev, 6 * ancf->nnodes, &ancf->vprev));
   max = 1 + ancf->nnodes / PetscMax(1, ancf->groupnodes / 2);
   PetscCall(PetscMalloc1(max, &ancf->groups));
   while (first < ancf->nbeams) {

@@ -79,10 +79,13 @@ struct _p_Ancf {
   Mat J;
   PetscReal *backup;                      /* e, v, history at the start of AncfAdvance(), 3 x nodes x 6 */
   PetscReal *saved, savedtime, savedstep; /* the same for AncfSaveState(), NULL before */
-  PetscReal *history, *vprev;             /* acceleration carried by TSALPHA2, velocity before the step */
+  PetscReal *history, *eprev, *vprev;     /* acceleration carried by TSALPHA2, e and v before the step; NULL with other types */
+  Vec A, E0, V0, work;                    /* the same as vectors, and a work vector */
+  PetscReal stagedt;                      /* step of the last stage, s */
   PetscReal nominal;                      /* step of a TS that does not adapt, s; 0: it adapts */
   PetscBool given;                        /* history was set by the user */
   PetscBool restart, priming;             /* TS must start afresh; AncfAlphaStart() is at work */
+  PetscBool exact;                        /* e, v and history are all that TS remembers, see AncfPack() */
   PetscInt uncounted[3]; /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
   PetscReal step;        /* what an adaptive TS wants next, s; 0: unknown */
 };
@@ -110,9 +113,13 @@ extern PetscErrorCode AncfStateLoad(Ancf ancf, PetscReal t, const PetscReal *x);
 /* Loads at time t of the step. */
 extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
 
-/* ancfmotion.c: prescribed coordinates at time t; MoveState also in the state and the vectors of TS. */
+/* ancfalpha.c: steps, Newton and linear iterations of TS. */
+extern PetscErrorCode AncfTSCounts(Ancf ancf, PetscInt n[3]);
+
+/* ancfmotion.c: room for the motion of supports; prescribed coordinates at time t; MoveNodes also in the state and the vectors of TS. */
+extern PetscErrorCode AncfMotionCreate(Ancf ancf);
 extern void AncfMove(Ancf ancf, PetscReal t);
-extern PetscErrorCode AncfMoveState(Ancf ancf, PetscReal t);
+extern PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t);
 
 /* ancfloads.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
@@ -162,6 +169,7 @@ extern PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *size);
 
 /* ancfalpha.c */
+extern PetscErrorCode AncfAlphaSetUp(Ancf ancf);
 extern PetscErrorCode AncfAlphaPreStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaPostStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt);

@@ -65,7 +65,7 @@ void AncfMove(Ancf ancf, PetscReal t)
 }
 
 /* After a step: the moving nodes are exactly where they should be. */
-PetscErrorCode AncfMoveState(Ancf ancf, PetscReal t)
+PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t)
 {
   PetscFunctionBegin;
   if (!ancf->motion) PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,6 +74,21 @@ PetscErrorCode AncfMoveState(Ancf ancf, PetscReal t)
     PetscCall(AncfTSTouch(ancf));
   else
     PetscCall(AncfTSCopy(ancf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfMotionCreate(Ancf ancf)
+{
+  PetscFunctionBegin;
+  if (ancf->motion) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc3(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm));
+  for (PetscInt k = 0; k < ancf->ngroups; k++) {
+    const PetscInt first = ancf->beams[ancf->groups[k]->firstbeam].node;
+
+    ancf->groups[k]->motion = ancf->motion + 18 * first;
+    ancf->groups[k]->resta = ancf->resta + 6 * first;
+    ancf->groups[k]->restm = ancf->restm + 6 * first;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,16 +108,7 @@ PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const 
     PetscCheck(!PetscIsInfOrNanReal(e[c] + v[c] + a[c]), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
                "AncfSetNodeMotion: beam %" PetscInt_FMT ", node %" PetscInt_FMT ": coordinate %d (%g, %g, %g) must be finite",
                beam, node, c, (double)e[c], (double)v[c], (double)a[c]);
-  if (!ancf->motion) {
-    PetscCall(PetscCalloc3(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm));
-    for (PetscInt k = 0; k < ancf->ngroups; k++) {
-      const PetscInt first = ancf->beams[ancf->groups[k]->firstbeam].node;
-
-      ancf->groups[k]->motion = ancf->motion + 18 * first;
-      ancf->groups[k]->resta = ancf->resta + 6 * first;
-      ancf->groups[k]->restm = ancf->restm + 6 * first;
-    }
-  }
+  PetscCall(AncfMotionCreate(ancf));
   if (ancf->motiontime != ancf->t) { /* the others go on from where they are */
     for (PetscInt i = 0; i < ancf->nnodes; i++)
       for (int c = 0; c < 6 && ancf->fixed[i] & ANCF_MOVING; c++) {
@@ -118,9 +124,9 @@ PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const 
   for (PetscInt k = 0; k < ancf->ngroups; k++) {
     ancf->groups[k]->motiontime = ancf->motiontime;
     if (ancf->groups[k]->firstbeam <= beam && beam < ancf->groups[k]->firstbeam + ancf->groups[k]->nbeams)
-      PetscCall(AncfMoveState(ancf->groups[k], ancf->t));
+      PetscCall(AncfMoveNodes(ancf->groups[k], ancf->t));
   }
-  if (!ancf->ngroups) PetscCall(AncfMoveState(ancf, ancf->t));
+  if (!ancf->ngroups) PetscCall(AncfMoveNodes(ancf, ancf->t));
   ancf->avalid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,24 +6,28 @@
 */
 #include "ancfbatch.h"
 
-/* Which form each TS type takes; anything else is refused. */
+/*
+  Which form each TS type takes; anything else is refused. The last column: nothing is carried from step to step but the state
+  and, by TSALPHA2, the acceleration.
+*/
 static const struct {
   const char *type;
   AncfForm form;
+  PetscBool exact;
 } ancf_types[] = {
-    {TSALPHA2, ANCF_FORM_SECOND},
-    {TSBEULER, ANCF_FORM_FIRST},
-    {TSCN, ANCF_FORM_FIRST},
-    {TSTHETA, ANCF_FORM_FIRST},
-    {TSBDF, ANCF_FORM_FIRST},
-    {TSALPHA, ANCF_FORM_FIRST},
-    {TSARKIMEX, ANCF_FORM_FIRST},
-    {"dirk", ANCF_FORM_FIRST},
-    {TSROSW, ANCF_FORM_FIRST},
-    {TSEULER, ANCF_FORM_EXPLICIT},
-    {TSRK, ANCF_FORM_EXPLICIT},
-    {TSSSP, ANCF_FORM_EXPLICIT},
-    {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC},
+    {TSALPHA2, ANCF_FORM_SECOND, PETSC_TRUE},
+    {TSBEULER, ANCF_FORM_FIRST, PETSC_TRUE},
+    {TSCN, ANCF_FORM_FIRST, PETSC_TRUE},
+    {TSTHETA, ANCF_FORM_FIRST, PETSC_FALSE},
+    {TSBDF, ANCF_FORM_FIRST, PETSC_FALSE},
+    {TSALPHA, ANCF_FORM_FIRST, PETSC_FALSE},
+    {TSARKIMEX, ANCF_FORM_FIRST, PETSC_FALSE},
+    {"dirk", ANCF_FORM_FIRST, PETSC_FALSE},
+    {TSROSW, ANCF_FORM_FIRST, PETSC_FALSE},
+    {TSEULER, ANCF_FORM_EXPLICIT, PETSC_TRUE},
+    {TSRK, ANCF_FORM_EXPLICIT, PETSC_FALSE},
+    {TSSSP, ANCF_FORM_EXPLICIT, PETSC_FALSE},
+    {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC, PETSC_TRUE},
 };
 
 PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
@@ -350,6 +354,17 @@ static PetscErrorCode AncfPreStep(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AncfPreStage(TS ts, PetscReal t)
+{
+  Ancf ancf;
+
+  PetscFunctionBegin;
+  (void)t;
+  PetscCall(TSGetApplicationContext(ts, &ancf));
+  PetscCall(TSGetTimeStep(ts, &ancf->stagedt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A step that was reduced because Newton failed grows again, which TSADAPTNONE would not do. */
 static PetscErrorCode AncfPostStep(TS ts)
 {
@@ -405,9 +420,13 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
   PetscFunctionBegin;
   PetscCall(PetscFree(ancf->backup));
   PetscCall(PetscFree(ancf->damped));
-  if (!ancf->whole) PetscCall(PetscFree2(ancf->history, ancf->vprev));
+  if (!ancf->whole) PetscCall(PetscFree3(ancf->history, ancf->eprev, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
+  PetscCall(VecDestroy(&ancf->A));
+  PetscCall(VecDestroy(&ancf->E0));
+  PetscCall(VecDestroy(&ancf->V0));
+  PetscCall(VecDestroy(&ancf->work));
   PetscCall(MatDestroy(&ancf->J));
   PetscCall(TSDestroy(&ancf->ts));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -436,6 +455,8 @@ static PetscErrorCode AncfSetUpSymplectic(Ancf ancf)
 PetscErrorCode AncfChooseForm(Ancf ancf)
 {
   TSType type;
+  TSAdapt adapt;
+  PetscBool fixedstep;
   const size_t n = sizeof(ancf_types) / sizeof(ancf_types[0]);
   size_t k;
   char list[256] = "";
@@ -451,7 +472,10 @@ PetscErrorCode AncfChooseForm(Ancf ancf)
     PetscCall(PetscStrlcat(list, ancf_types[k].type, sizeof(list)));
   }
   PetscCheck(k < n, ancf->comm, PETSC_ERR_ARG_WRONG, "-ancf_ts_type %s cannot integrate beams; use one of:%s", type, list);
+  PetscCall(TSGetAdapt(ancf->ts, &adapt));
+  PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
   ancf->form = ancf_types[k].form;
+  ancf->exact = (PetscBool)(ancf_types[k].exact && fixedstep);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -493,6 +517,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(PetscMalloc1(3 * n, &ancf->backup));
   PetscCall(TSSetApplicationContext(ancf->ts, ancf));
   PetscCall(TSSetPreStep(ancf->ts, AncfPreStep));
+  PetscCall(TSSetPreStage(ancf->ts, AncfPreStage));
   PetscCall(TSSetPostStep(ancf->ts, AncfPostStep));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
@@ -511,7 +536,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
     PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
     PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
-    if (!ancf->history) PetscCall(PetscCalloc2(n, &ancf->history, n, &ancf->vprev));
+    PetscCall(AncfAlphaSetUp(ancf));
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {

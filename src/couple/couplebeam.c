@@ -72,64 +72,39 @@ static PetscErrorCode Momentum_Beam(void *ctx, PetscReal p[3], PetscReal weight[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  State of all beams together, saved by beam 0: time, 1 when alpha2 carries an acceleration, supports (6), coordinates,
-  velocities, loads, that acceleration.
-*/
-#define BEAM_HEAD 8
+/* State of all beams together, saved by beam 0: supports (6), what AncfPack() gives. */
+#define BEAM_HEAD 6
 static PetscErrorCode StateSize_Beam(void *ctx, PetscInt *n)
 {
   const Beam *b = (const Beam *)ctx;
-  PetscInt nodes = 0;
 
   PetscFunctionBegin;
   *n = 0;
   if (b->beam) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AncfGetNumNodes(b->ancf, &nodes));
-  *n = BEAM_HEAD + 4 * 6 * nodes;
+  PetscCall(AncfGetPackSize(b->ancf, n));
+  *n += BEAM_HEAD;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Load_Beam(void *ctx, const PetscReal *state)
 {
   Beam *b = (Beam *)ctx;
-  PetscReal *Q;
-  PetscInt n;
 
   PetscFunctionBegin;
   if (b->beam) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AncfGetNumNodes(b->ancf, &n));
-  n *= 6;
-  for (int k = 0; k < 6; k++) b->reaction[k / 3][k % 3] = state[2 + k];
-  PetscCall(AncfSetState(b->ancf, state[0], state + BEAM_HEAD, state + BEAM_HEAD + n));
-  if (state[1] != 0.0) PetscCall(AncfSetHistory(b->ancf, state + BEAM_HEAD + 3 * n));
-  PetscCall(AncfGetLoads(b->ancf, &Q));
-  PetscCall(PetscArraycpy(Q, state + BEAM_HEAD + 2 * n, n));
+  for (int k = 0; k < 6; k++) b->reaction[k / 3][k % 3] = state[k];
+  PetscCall(AncfUnpack(b->ancf, state + BEAM_HEAD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TS does not give its memory away: it continues from what is saved here, as it will after Load_Beam(). */
 static PetscErrorCode Save_Beam(void *ctx, PetscReal *state)
 {
   const Beam *b = (const Beam *)ctx;
-  const PetscReal *e, *v, *A;
-  PetscReal *Q;
-  PetscInt n;
 
   PetscFunctionBegin;
   if (b->beam) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AncfGetNumNodes(b->ancf, &n));
-  n *= 6;
-  PetscCall(AncfGetState(b->ancf, &state[0], &e, &v, NULL));
-  PetscCall(AncfGetLoads(b->ancf, &Q));
-  PetscCall(AncfGetHistory(b->ancf, &A));
-  state[1] = A ? 1.0 : 0.0;
-  for (int k = 0; k < 6; k++) state[2 + k] = b->reaction[k / 3][k % 3];
-  PetscCall(PetscArraycpy(state + BEAM_HEAD, e, n));
-  PetscCall(PetscArraycpy(state + BEAM_HEAD + n, v, n));
-  PetscCall(PetscArraycpy(state + BEAM_HEAD + 2 * n, Q, n));
-  if (A) PetscCall(PetscArraycpy(state + BEAM_HEAD + 3 * n, A, n));
-  PetscCall(Load_Beam(ctx, state));
+  for (int k = 0; k < 6; k++) state[k] = b->reaction[k / 3][k % 3];
+  PetscCall(AncfPack(b->ancf, state + BEAM_HEAD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

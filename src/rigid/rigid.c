@@ -453,6 +453,25 @@ PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode RigidMoveState(Rigid rigid, FrondState *s)
+{
+  PetscReal *x = NULL, t = rigid->t;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetPackSize(rigid, &n));
+  if (s->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
+  if (s->way == FROND_STATE_SAVE) PetscCall(RigidPack(rigid, x));
+  FrondMoveReal(s, "bodies/time", &t, 1);
+  FrondMoveReal(s, "bodies/state", x, n);
+  if (s->way == FROND_STATE_LOAD) {
+    PetscCall(RigidSetTime(rigid, t));
+    PetscCall(RigidUnpack(rigid, x));
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* From the wrench of the last RigidAdvance(); before the first one, from the loads collected so far. Gravity included. */
 PetscErrorCode RigidGetAcceleration(Rigid rigid, PetscInt body, PetscReal A[3], PetscReal alpha[3])
 {

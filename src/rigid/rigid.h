@@ -8,7 +8,7 @@
 #ifndef RIGID_H
 #define RIGID_H
 
-#include "frondsys.h"
+#include "frondstate.h"
 #include "shortrange.h"
 #include <petscviewer.h>
 
@@ -139,6 +139,8 @@ FROND_EXTERN PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n);
 FROND_EXTERN PetscErrorCode RigidPack(Rigid rigid, PetscReal state[]);
 /* Back to what RigidPack() wrote. state: RigidGetPackSize() reals. */
 FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
+/* Time and the packed state as named arrays, see frondstate.h. state: saved to or loaded from. */
+FROND_EXTERN PetscErrorCode RigidMoveState(Rigid rigid, FrondState *state);
 /*
   From all wrenches of the last step: applied, weight, short-range and joints (before the first one, from the loads collected
   so far); of a prescribed body, the slope of its table. Each output may be NULL. body: number. A: 3, m/s^2. alpha: 3, space
