@@ -1,6 +1,6 @@
 # debian.sh - shell functions of the scripts that build on Debian 12; sourced, with the repository as the working folder.
 
-frond_packages="build-essential cmake pkg-config petsc-dev libopenmpi-dev libhdf5-openmpi-dev python3-numpy python3-h5py python3-matplotlib"
+frond_packages="build-essential cmake pkg-config petsc-dev libopenmpi-dev libhdf5-openmpi-dev zlib1g-dev python3-numpy python3-h5py python3-matplotlib"
 
 # frond_install PACKAGE...: install those that are missing, as root or through sudo.
 frond_install() {

@@ -1,9 +1,9 @@
 /*
   frondstate.h - the state of a solver as a list of named arrays.
 
-  Each part lists its state once, in XMoveState(part, state): one FrondMove line for each array. What happens to the arrays is up to the
-  `state` given: they are counted, copied to memory or a file, or set from there (checkpoints, rollback of a step). Names are paths
-  such as fluid/velocity_x, the same for every backend; arrays that only one backend has are asked for with has().
+  Each part lists its state once, in XMoveState(part, state): one FrondMove line for each array. What happens to the arrays is up
+  to the `state` given: they are counted, copied to memory or a file, or set from there (checkpoints, rollback of a step). Names
+  are paths such as fluid/velocity_x, the same for every backend; arrays that only one backend has are asked for with has().
 */
 #ifndef FRONDSTATE_H
 #define FRONDSTATE_H

@@ -14,6 +14,7 @@ frond_app_test(app_badinput unit)
 frond_app_test(app_run unit)
 frond_app_test(app_help unit)
 frond_app_test(app_probes unit)
+frond_app_test(app_checkpoint unit)
 frond_app_test(app_rigid validation)
 frond_app_test(app_examples validation)
 

@@ -181,6 +181,8 @@ FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfGetPackSize(Ancf ancf, PetscInt *n);
 /* Pack, see AncfGetPackSize(), whose number of reals this takes; not between AncfGetLoadsEnd() and the end of the step. state: filled. */
 FROND_EXTERN PetscErrorCode AncfPack(Ancf ancf, PetscReal state[]);
+/* Whether AncfPack() leaves the run as it is. exact: whether. */
+FROND_EXTERN PetscErrorCode AncfGetPackExact(Ancf ancf, PetscBool *exact);
 /* Back to a packed state. state: from AncfPack() of the same beams. */
 FROND_EXTERN PetscErrorCode AncfUnpack(Ancf ancf, const PetscReal state[]);
 /* The packed state and the counts of steps and iterations as named arrays, see frondstate.h. state: saved to or loaded from. */

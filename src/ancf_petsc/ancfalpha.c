@@ -11,8 +11,9 @@
   alpha_m A_1.
 
   State and time are then put back. A TS with steps of given size makes that step from e = v = 0 with dt = 1 and the parameters
-  alpha_m = alpha_f = 1, gamma = beta = 1/2, so that A_1 = 2 e_1 and every operation is exact: A_1 is A to the last bit. An adaptive one
-  begins at the state extrapolated backwards, which is the history that its error estimate needs; A_1 is A to round-off.
+  alpha_m = alpha_f = 1, gamma = beta = 1/2, so that A_1 = 2 e_1 and every operation is exact: A_1 is A to the last bit. An
+  adaptive one begins at the state extrapolated backwards, which is the history that its error estimate needs; A_1 is A to
+  round-off.
 
   A is found after each step by the very operations of TSALPHA2 on the same numbers, so that a run that is started again with
   it goes on with the same bits.
@@ -122,8 +123,8 @@ PetscErrorCode AncfAlphaPreStep(Ancf ancf)
 }
 
 /*
-  After it: e_1 = e_0 + dt v_0 + dt^2 ((1/2 - beta) A_0 + beta A_1) gives A_1. The operations are those of TSALPHA2 one by one, for
-  the same rounding.
+  After it: e_1 = e_0 + dt v_0 + dt^2 ((1/2 - beta) A_0 + beta A_1) gives A_1. The operations are those of TSALPHA2 one by one,
+  for the same rounding.
 */
 PetscErrorCode AncfAlphaPostStep(Ancf ancf)
 {

@@ -96,7 +96,7 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 #define ANCF_DEFAULT_AXIAL 3
 #define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
-#define ANCF_MAX_HALVES 14        /* of a step that Newton's method fails in */
+#define ANCF_MAX_HALVES 14      /* of a step that Newton's method fails in */
 #define ANCF_DEFAULT_GROUP 1000 /* nodes; 1 kB each in the vectors of TSALPHA2: fits a level-2 cache */
 
 #if defined(PETSC_UNLIMITED)
@@ -116,7 +116,8 @@ extern void AncfSetLoadTime(Ancf ancf, PetscReal t);
 /* ancfalpha.c: steps, Newton and linear iterations of TS. */
 extern PetscErrorCode AncfTSCounts(Ancf ancf, PetscInt n[3]);
 
-/* ancfmotion.c: room for the motion of supports; prescribed coordinates at time t; MoveNodes also in the state and the vectors of TS. */
+/* ancfmotion.c: room for the motion of supports; prescribed coordinates at time t; MoveNodes also in the state and the vectors of
+ * TS. */
 extern PetscErrorCode AncfMotionCreate(Ancf ancf);
 extern void AncfMove(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t);

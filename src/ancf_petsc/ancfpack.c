@@ -2,9 +2,9 @@
   ancfpack.c - all that the beams carry from step to step as one array, and back.
 
   TSALPHA2 with steps of given size, backward Euler, Crank-Nicolson, Euler and the symplectic methods remember e, v and at most
-  an acceleration, which is here (ancfalpha.c): packing changes nothing, and a run that is continued from a packed state has the bits of
-  one that was not interrupted. Other types have memory that TS does not give away: they begin anew at what is packed, when it is packed and
-  when it is unpacked, so that these two go on alike.
+  an acceleration, which is here (ancfalpha.c): packing changes nothing, and a run that is continued from a packed state has the
+  bits of one that was not interrupted. Other types have memory that TS does not give away: they begin anew at what is packed,
+  when it is packed and when it is unpacked, so that these two go on alike.
 */
 #include "ancfimpl.h"
 
@@ -27,6 +27,14 @@ PetscErrorCode AncfGetPackSize(Ancf ancf, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfGetPackExact(Ancf ancf, PetscBool *exact)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetPackExact: call AncfSetUp() first");
+  *exact = ancf->exact;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfPack(Ancf ancf, PetscReal state[])
 {
   PetscReal *p[PACK_ARRAYS], *s = state + PACK_HEAD;
@@ -34,7 +42,8 @@ PetscErrorCode AncfPack(Ancf ancf, PetscReal state[])
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfPack: call AncfSetUp() first");
-  PetscCheck(!ancf->linear, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfPack: loads that vary over the step to come cannot be packed");
+  PetscCheck(!ancf->linear, ancf->comm, PETSC_ERR_ARG_WRONGSTATE,
+             "AncfPack: loads that vary over the step to come cannot be packed");
   state[0] = ancf->t;
   state[1] = ancf->history && !(ancf->restart && !ancf->given);
   state[2] = ancf->step;

@@ -8,6 +8,7 @@
 #define APP_H
 
 #include "couple.h"
+#include "frondstate.h"
 #include <stdint.h>
 #include <stdio.h>
 
@@ -19,6 +20,7 @@ enum { APP_EXIT_OK = 0, APP_EXIT_USER = 1, APP_EXIT_NUMERICAL = 2, APP_EXIT_IO =
 /* apperror.c: one clear line for an error, whatever depth it comes from. */
 typedef struct {
   PetscBool trace; /* print PETSc's trace too */
+  PetscBool files; /* HDF5 holds a file that it could not write */
   char message[2048];
   char context[128]; /* what the command was doing, put before the message; empty for nothing */
 } AppErrors;
@@ -110,6 +112,10 @@ typedef struct {
   PetscBool overwrite;
   PetscReal outevery, histevery, progressevery; /* s, s, s of wall time */
   PetscBool field[FIELD_COUNT];
+  PetscReal checkpointevery; /* s; 0: every step, -1: none */
+  PetscInt checkpointkeep;
+  char restart[PETSC_MAX_PATH_LEN]; /* checkpoint to go on from, or a folder of them; empty for none */
+  PetscBool restartchanged;
   PetscInt faultfield, faultmarker, faultstep; /* -fault_nan; faultstep < 0: none */
 } AppScene;
 PetscErrorCode AppSceneRead(AppScene *scene, const char file[]);
@@ -149,6 +155,42 @@ PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3]
     if ((app)->errors) snprintf((app)->errors->context, sizeof((app)->errors->context), __VA_ARGS__);                            \
   } while (0)
 
+/* appstate.c: the state of a run as named arrays in memory. */
+typedef struct {
+  char name[96];
+  FrondStateType type;
+  size_t n, bytes; /* values; bytes of memory */
+  void *data;
+} StateArray;
+typedef struct {
+  FrondState state; /* first: AppStateBegin() gives a pointer to it */
+  PetscInt n, alloc, at;
+  StateArray *array;
+} AppState;
+FrondState *AppStateBegin(AppState *s, FrondStateWay way);
+PetscErrorCode AppStateAdd(AppState *s, const char name[], FrondStateType type, size_t n, void **data);
+const char *AppStateNotFinite(const AppState *s);
+PetscErrorCode AppStateDestroy(AppState *s);
+PetscErrorCode AppMoveState(App *app, FrondState *s);
+
+/* checkpoint.c: checkpoint files. */
+#define APP_CHECKPOINT_FORMAT 1
+typedef struct {
+  PetscInt step;
+  PetscReal t;   /* s */
+  char *options; /* AppOptionsText() of the run that wrote it */
+} CheckpointInfo;
+void AppCheckpointName(PetscInt step, size_t len, char name[]);
+PetscErrorCode AppCheckpointWrite(const char dir[], const AppState *s, const CheckpointInfo *info, PetscInt keep, size_t len,
+                                  char path[]);
+PetscErrorCode AppCheckpointRead(const char file[], AppState *s, CheckpointInfo *info);
+PetscErrorCode AppCheckpointNewest(const char dir[], const char not [], PetscBool good, size_t len, char path[]);
+PetscErrorCode AppCheckpointPrune(const char dir[], PetscInt newest, PetscInt keep);
+
+/* apprestart.c: which checkpoint, and whether it is of this scene. */
+PetscErrorCode AppOptionsText(char **text);
+PetscErrorCode AppRestartRead(const App *app, AppState *s, CheckpointInfo *info);
+
 /* scenerigid.c: lumped beams, joints, short-range forces. */
 PetscErrorCode AppSceneReadLumped(AppScene *scene, PetscInt *trunks);
 PetscErrorCode AppSceneReadJoints(AppScene *scene);
@@ -183,14 +225,16 @@ PetscErrorCode AppOutputCheck(const char dir[]);
 PetscErrorCode AppOutputCreate(const App *app, AppOutput *out);
 PetscErrorCode AppOutputWrite(AppOutput out, App *app);
 PetscErrorCode AppOutputLast(AppOutput out, PetscReal *t, const char **file, PetscInt *frames);
+/* The frames so far. After a load those of the folder that are later are removed, and the index is written anew. */
+PetscErrorCode AppOutputMoveState(AppOutput out, FrondState *s);
 PetscErrorCode AppOutputDestroy(AppOutput *out);
 
 /* xdmf.c */
 typedef struct {
   const App *app;
-  PetscInt nframes;
-  PetscReal *time;  /* nframes, s */
-  PetscInt *points; /* points on each beam's centre line, nbeams */
+  PetscInt first, nframes; /* first: of the frames that are in the folder */
+  PetscReal *time;         /* nframes, s */
+  PetscInt *points;        /* points on each beam's centre line, nbeams */
 } XdmfSeries;
 PetscErrorCode AppXdmfWrite(const char dir[], const XdmfSeries *series);
 void AppFrameName(PetscInt frame, size_t len, char name[]);
@@ -216,6 +260,10 @@ typedef struct _AppHistory *AppHistory;
 PetscErrorCode AppHistoryCreate(App *app, AppHistory *history);
 PetscErrorCode AppHistoryRecord(AppHistory history, App *app, PetscReal dt);
 PetscErrorCode AppHistoryDestroy(AppHistory *history);
+/* The rows so far. After a load history.csv is cut back to them. */
+PetscErrorCode AppHistoryMoveState(AppHistory history, App *app, FrondState *s);
+/* Rows to the disk. */
+PetscErrorCode AppHistorySync(AppHistory history);
 /* Largest values seen in the rows so far: speed (m/s), compression (-), momentum residual and scale (kg m/s), audit losses. */
 typedef struct {
   PetscReal vmax, compression, residual, scale, forcelost, force, momentlost, moment, powerlost, power;

@@ -30,7 +30,15 @@ typedef struct {
   PetscReal nextframe, nexthistory, lastdt; /* s */
   PetscInt frame;                           /* frames due so far */
   PetscReal wallstart, wallprinted;         /* s */
+  PetscReal tstart;                         /* of this start of the run, s */
+  PetscInt stepstart;
   PetscBool tty;
+  PetscReal nextcheckpoint; /* s */
+  AppState state;           /* the one being saved */
+  AppState good;            /* the last finite one, written when a step fails */
+  CheckpointInfo goodinfo;
+  PetscBool exact;    /* saving changes nothing */
+  PetscReal goodnext; /* wall time of the next one, s */
 } Run;
 
 static void format_seconds(PetscReal s, size_t len, char text[])
@@ -45,24 +53,26 @@ static void format_seconds(PetscReal s, size_t len, char text[])
     snprintf(text, len, "%d h %02d min", (int)s / 3600, ((int)s / 60) % 60);
 }
 
-static PetscReal throughput(const App *app, PetscReal wall)
+static PetscReal throughput(const Run *run, PetscReal wall)
 {
+  const App *app = run->app;
   PetscReal markers = app->sph ? (PetscReal)(app->nfluid + app->nboundary) : (PetscReal)1;
 
-  return wall > 0 ? markers * (PetscReal)app->step / wall : 0;
+  return wall > 0 ? markers * (PetscReal)(app->step - run->stepstart) / wall : 0;
 }
 
 static void print_progress(Run *run, PetscBool last)
 {
   const App *app = run->app;
-  PetscReal now = AppWallTime(), wall = now - run->wallstart, part = app->t / app->scene.tend;
+  PetscReal now = AppWallTime(), wall = now - run->wallstart, part = app->t / app->scene.tend,
+            made = (app->t - run->tstart) / (app->scene.tend - run->tstart);
   char left[32];
 
   if (app->scene.progressevery <= 0 || (!last && now - run->wallprinted < app->scene.progressevery)) return;
   run->wallprinted = now;
-  format_seconds(part > 0 ? wall * (1 - part) / part : (PetscReal)INFINITY, sizeof(left), left);
+  format_seconds(made > 0 ? wall * (1 - made) / made : (PetscReal)INFINITY, sizeof(left), left);
   printf("%st = %.6g s (%.1f %%)  step %d  dt %.3g s  %.3g %s/s  ETA %s%s", run->tty ? "\r" : "", (double)app->t,
-         100 * (double)part, (int)app->step, (double)run->lastdt, (double)throughput(app, wall),
+         100 * (double)part, (int)app->step, (double)run->lastdt, (double)throughput(run, wall),
          app->sph ? "markers*steps" : "steps", left, run->tty ? "\033[K" : "\n");
   if (run->tty && last) printf("\n");
   fflush(stdout);
@@ -91,15 +101,128 @@ static PetscErrorCode record(Run *run, PetscBool frame, PetscBool row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The one list of what the run itself remembers. */
+static PetscErrorCode move_run(Run *run, FrondState *s)
+{
+  PetscFunctionBegin;
+  PetscCall(AppMoveState(run->app, s));
+  FrondMoveReal(s, "run/dt", &run->lastdt, 1);
+  FrondMoveInt(s, "run/frames_due", &run->frame, 1);
+  FrondMoveReal(s, "run/next_frame", &run->nextframe, 1);
+  FrondMoveReal(s, "run/next_history", &run->nexthistory, 1);
+  PetscCall(AppHistoryMoveState(run->history, run->app, s));
+  PetscCall(AppOutputMoveState(run->output, s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void next_checkpoint(Run *run)
+{
+  const PetscReal every = run->app->scene.checkpointevery, t = run->app->t;
+
+  run->nextcheckpoint =
+      every > 0 ? every * (PetscFloorReal(t / every * (1 + 1e-12)) + 1) : (every == 0 ? t : (PetscReal)INFINITY);
+}
+
+/* Go on from a checkpoint. Frames and rows due next follow from the intervals, which may have been changed. */
+static PetscErrorCode restart(Run *run)
+{
+  const AppScene *s = &run->app->scene;
+  CheckpointInfo info;
+
+  PetscFunctionBegin;
+  PetscCall(AppRestartRead(run->app, &run->state, &info));
+  PetscCall(PetscFree(info.options));
+  PetscCall(move_run(run, AppStateBegin(&run->state, FROND_STATE_LOAD)));
+  if (s->outevery > 0 && run->nextframe != PetscMin((PetscReal)run->frame * s->outevery, s->tend)) {
+    run->frame = (PetscInt)PetscFloorReal(run->app->t / s->outevery);
+    next_frame(run);
+  }
+  if (s->histevery > 0 && run->nexthistory > (run->app->t + s->histevery) * (1 + 1e-9))
+    run->nexthistory = run->app->t + s->histevery;
+  PetscCall(AppCheckpointPrune(s->outdir, run->app->step, -1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode run_start(Run *run)
 {
   PetscFunctionBegin;
+  run->exact = PETSC_TRUE;
+  if (run->app->ancf) PetscCall(AncfGetPackExact(run->app->ancf, &run->exact));
   PetscCall(AppOutputCreate(run->app, &run->output));
   PetscCall(AppHistoryCreate(run->app, &run->history));
-  PetscCall(record(run, PETSC_TRUE, PETSC_TRUE));
-  next_frame(run);
-  run->nexthistory = run->app->scene.histevery;
+  if (run->app->scene.restart[0]) {
+    PetscCall(restart(run));
+  } else {
+    PetscCall(record(run, PETSC_TRUE, PETSC_TRUE));
+    next_frame(run);
+    run->nexthistory = run->app->scene.histevery;
+  }
+  next_checkpoint(run);
   run->wallstart = run->wallprinted = AppWallTime();
+  run->stepstart = run->app->step;
+  run->tstart = run->app->t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode write_checkpoint(Run *run, AppState *s, CheckpointInfo *info, PetscBool tell)
+{
+  const AppScene *scene = &run->app->scene;
+  char path[PETSC_MAX_PATH_LEN + 80];
+
+  PetscFunctionBegin;
+  PetscCall(AppOptionsText(&info->options));
+  PetscCall(AppHistorySync(run->history));
+  PetscCall(AppCheckpointWrite(scene->outdir, s, info, scene->checkpointkeep, sizeof(path), path));
+  PetscCall(PetscFree(info->options));
+  if (tell)
+    printf("checkpoint of step %" PetscInt_FMT ", t = %.9g s: go on with -restart %s\n", info->step, (double)info->t, path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode save_state(Run *run, AppState *s, CheckpointInfo *info)
+{
+  PetscFunctionBegin;
+  PetscCall(move_run(run, AppStateBegin(s, FROND_STATE_SAVE)));
+  info->step = run->app->step;
+  info->t = run->app->t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Keep the state for the case that a later step fails, at the cost of a hundredth of the time. */
+static PetscErrorCode keep_good(Run *run)
+{
+  PetscReal start = AppWallTime();
+  CheckpointInfo info = {0, 0, NULL};
+
+  PetscFunctionBegin;
+  if (!run->exact || start < run->goodnext) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(save_state(run, &run->state, &info));
+  if (!AppStateNotFinite(&run->state)) {
+    const AppState swap = run->good;
+    run->good = run->state;
+    run->state = swap;
+    run->goodinfo = info;
+  }
+  run->goodnext = AppWallTime() + 99 * (AppWallTime() - start);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After a step: a checkpoint when one is due, when the run is interrupted, and at its end if there are any. */
+static PetscErrorCode checkpoint(Run *run)
+{
+  const AppScene *s = &run->app->scene;
+  const PetscBool due =
+      (PetscBool)(run->app->t >= run->nextcheckpoint * (1 - 1e-12) || (run->app->t >= s->tend && s->checkpointevery >= 0));
+  CheckpointInfo info;
+
+  PetscFunctionBegin;
+  if (!due && !stop_signal) {
+    PetscCall(keep_good(run));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(save_state(run, &run->state, &info));
+  PetscCall(write_checkpoint(run, &run->state, &info, (PetscBool)(stop_signal != 0)));
+  next_checkpoint(run);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,14 +237,17 @@ static PetscErrorCode run_steps(Run *run)
     PetscBool done, frame, row;
     PetscCall(AppInjectFault(app));
     PetscCall(AppStep(app, tmax, &run->lastdt));
-    done = (PetscBool)(app->t >= tend || stop_signal);
+    done = (PetscBool)(app->t >= tend);
     frame = (PetscBool)(done || app->scene.outevery <= 0 || app->t >= run->nextframe);
     row = (PetscBool)(done || app->t >= run->nexthistory * (1 - 1e-12));
     PetscCall(record(run, frame, row));
     if (frame) next_frame(run);
     if (row && app->scene.histevery > 0)
       run->nexthistory = app->scene.histevery * (PetscFloorReal(app->t / app->scene.histevery * (1 + 1e-12)) + 1);
-    print_progress(run, done);
+    PetscCall(checkpoint(run));
+    /* those of an interruption come after the checkpoint, which knows nothing of them */
+    if (stop_signal) PetscCall(record(run, (PetscBool)!frame, (PetscBool)!row));
+    print_progress(run, (PetscBool)(done || stop_signal));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,7 +288,7 @@ static PetscErrorCode print_summary(Run *run)
   PetscCall(AppOutputLast(run->output, NULL, NULL, &frames));
   format_seconds(wall, sizeof(text), text);
   printf("%s: t = %.6g s after %d steps, %s of wall time (%.3g %s/s)\n", app->scene.name, (double)app->t, (int)app->step, text,
-         (double)throughput(app, wall), app->sph ? "markers*steps" : "steps");
+         (double)throughput(run, wall), app->sph ? "markers*steps" : "steps");
   PetscCall(print_structures(app));
   if (app->sph) {
     PetscCall(SphGetCounts(app->sph, &fluid, &boundary, &left));
@@ -191,6 +317,18 @@ static void catch_signals(void)
   sigaction(SIGTERM, &action, NULL);
 }
 
+/* After a failed step: a checkpoint of the last good state. The first error is the one that is reported; this may fail silently.
+ */
+static void save_good(Run *run, PetscErrorCode ierr)
+{
+  const int number = (int)ierr;
+
+  if (!run->good.n || number == PETSC_ERR_FILE_WRITE || number == PETSC_ERR_FILE_OPEN) return;
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  if (write_checkpoint(run, &run->good, &run->goodinfo, PETSC_TRUE)) run->app->errors->files = PETSC_TRUE;
+  (void)PetscPopErrorHandler();
+}
+
 /* After a failed step: say what is safe. The history's rows and all frames are on disk already. */
 static void report_safe(const Run *run)
 {
@@ -217,12 +355,17 @@ PetscErrorCode AppRun(App *app, int *exitcode)
   if (!ierr) ierr = print_summary(&run);
   if (ierr) {
     report_safe(&run);
+    save_good(&run, ierr);
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL); /* the first error is the one to report */
     (void)AppHistoryDestroy(&run.history);
     (void)AppOutputDestroy(&run.output);
     (void)PetscPopErrorHandler();
+    (void)AppStateDestroy(&run.state);
+    (void)AppStateDestroy(&run.good);
     PetscFunctionReturn(ierr);
   }
+  PetscCall(AppStateDestroy(&run.state));
+  PetscCall(AppStateDestroy(&run.good));
   PetscCall(AppHistoryDestroy(&run.history));
   PetscCall(AppOutputDestroy(&run.output));
   if (stop_signal) printf("interrupted by signal %d: the results are whole up to t = %.6g s\n", (int)stop_signal, (double)app->t);

@@ -6,7 +6,9 @@
 */
 #include "app.h"
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct {
   char name[96], unit[16], description[96];
@@ -15,6 +17,7 @@ typedef struct {
 struct _AppHistory {
   char dir[PETSC_MAX_PATH_LEN];
   FILE *csv;
+  PetscBool known;                         /* the columns are made */
   PetscInt ncols, acols, nrows, arows, at; /* at: the column being filled */
   Column *column;
   PetscReal *row, *rows; /* ncols; nrows x ncols */
@@ -30,7 +33,7 @@ static PetscReal norm3(const PetscReal v[3])
 static PetscErrorCode put(AppHistory h, const char name[], const char unit[], const char description[], PetscReal value)
 {
   PetscFunctionBegin;
-  if (!h->nrows && h->at == h->ncols) {
+  if (!h->known && h->at == h->ncols) {
     if (h->ncols == h->acols) {
       h->acols = 2 * h->acols + 32;
       PetscCall(PetscRealloc((size_t)h->acols * sizeof(Column), &h->column));
@@ -208,6 +211,16 @@ static PetscErrorCode write_header(AppHistory h)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The shortest of the two forms that gives the same number back. */
+static void write_number(FILE *f, PetscReal x)
+{
+  char text[40];
+
+  snprintf(text, sizeof(text), "%.15g", (double)x);
+  if (strtod(text, NULL) != (double)x) snprintf(text, sizeof(text), "%.17g", (double)x);
+  fputs(text, f);
+}
+
 PetscErrorCode AppHistoryCreate(App *app, AppHistory *history)
 {
   char path[PETSC_MAX_PATH_LEN + 32];
@@ -218,13 +231,13 @@ PetscErrorCode AppHistoryCreate(App *app, AppHistory *history)
   *history = h;
   PetscCall(PetscStrncpy(h->dir, app->scene.outdir, sizeof(h->dir)));
   snprintf(path, sizeof(path), "%s/history.csv", h->dir);
-  h->csv = fopen(path, "w");
+  h->csv = fopen(path, app->scene.restart[0] ? "a+" : "w");
   PetscCheck(h->csv, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write '%s': %s", path, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Add the row of the current time; dt (s) is the last step's. */
-PetscErrorCode AppHistoryRecord(AppHistory h, App *app, PetscReal dt)
+/* The values of the current time; the first call makes the columns. */
+static PetscErrorCode fill_row(AppHistory h, App *app, PetscReal dt)
 {
   PetscFunctionBegin;
   h->at = 0;
@@ -235,20 +248,116 @@ PetscErrorCode AppHistoryRecord(AppHistory h, App *app, PetscReal dt)
   PetscCall(put_bodies(h, app));
   PetscCall(put_fluid(h, app));
   PetscCall(AppProbesPut(app, put, h));
+  h->known = PETSC_TRUE;
   for (PetscInt c = 0; c < h->ncols; c++)
     PetscCheck(!PetscIsInfOrNanReal(h->row[c]), PETSC_COMM_SELF, PETSC_ERR_FP,
                "%s is not finite at step %" PetscInt_FMT ", time %g s", h->column[c].name, app->step, (double)app->t);
-  if (!h->nrows) PetscCall(write_header(h));
-  for (PetscInt c = 0; c < h->ncols; c++) fprintf(h->csv, "%s%.15g", c ? "," : "", (double)h->row[c]);
-  fputc('\n', h->csv);
-  PetscCheck(!fflush(h->csv) && !ferror(h->csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s/history.csv': %s",
-             h->dir, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Keep h->row. */
+static PetscErrorCode add_row(AppHistory h)
+{
+  PetscFunctionBegin;
   if (h->nrows == h->arows) {
     h->arows = 2 * h->arows + 256;
     PetscCall(PetscRealloc((size_t)h->arows * (size_t)h->ncols * sizeof(PetscReal), &h->rows));
   }
   PetscCall(PetscArraycpy(h->rows + (size_t)h->nrows * (size_t)h->ncols, h->row, h->ncols));
   h->nrows++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Add the row of the current time; dt (s) is the last step's. */
+PetscErrorCode AppHistoryRecord(AppHistory h, App *app, PetscReal dt)
+{
+  PetscFunctionBegin;
+  PetscCall(fill_row(h, app, dt));
+  if (!h->nrows) PetscCall(write_header(h));
+  for (PetscInt c = 0; c < h->ncols; c++) {
+    if (c) fputc(',', h->csv);
+    write_number(h->csv, h->row[c]);
+  }
+  fputc('\n', h->csv);
+  PetscCheck(!fflush(h->csv) && !ferror(h->csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s/history.csv': %s",
+             h->dir, strerror(errno));
+  PetscCall(add_row(h));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppHistorySync(AppHistory h)
+{
+  PetscFunctionBegin;
+  PetscCheck(!fsync(fileno(h->csv)), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s/history.csv': %s", h->dir,
+             strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The line just read is a header or a row of this table; a row goes to h->row. */
+static PetscBool parse_line(AppHistory h, char *line, PetscBool header)
+{
+  char name[128], *at = line, *end;
+
+  for (PetscInt c = 0; c < h->ncols; c++) {
+    if (header) {
+      const size_t n = (size_t)snprintf(name, sizeof(name), "%s[%s]", h->column[c].name, h->column[c].unit);
+      if (strncmp(at, name, n)) return PETSC_FALSE;
+      end = at + n;
+    } else
+      h->row[c] = strtod(at, &end);
+    if (end == at || *end != (c == h->ncols - 1 ? '\n' : ',')) return PETSC_FALSE;
+    at = end + 1;
+  }
+  return PETSC_TRUE;
+}
+
+/* Read `rows` rows of the run so far and cut the file behind them; a folder without a history begins one. */
+static PetscErrorCode cut_back(AppHistory h, PetscInt rows, PetscReal tlast)
+{
+  char *line = NULL;
+  size_t len = 0;
+  PetscBool good;
+  off_t end;
+
+  PetscFunctionBegin;
+  rewind(h->csv);
+  if (getline(&line, &len, h->csv) < 0 || !rows) {
+    free(line);
+    PetscCheck(!ftruncate(fileno(h->csv), 0), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot cut '%s/history.csv': %s", h->dir,
+               strerror(errno));
+    if (rows) printf("'%s' has no history of the time before: it begins here\n", h->dir);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  good = parse_line(h, line, PETSC_TRUE);
+  while (good && h->nrows < rows && (good = getline(&line, &len, h->csv) > 0 && parse_line(h, line, PETSC_FALSE)))
+    PetscCall(add_row(h));
+  free(line);
+  PetscCheck(good && h->row[0] == tlast, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "'%s/history.csv' is not that of the checkpoint, which has %" PetscInt_FMT
+             " rows up to t = %.9g s: set output_dir to the run's own folder or to a new one",
+             h->dir, rows, (double)tlast);
+  end = ftello(h->csv);
+  PetscCheck(end >= 0 && !ftruncate(fileno(h->csv), end), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "cannot cut '%s/history.csv': %s", h->dir, strerror(errno));
+  fseeko(h->csv, 0, SEEK_END);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppHistoryMoveState(AppHistory h, App *app, FrondState *s)
+{
+  PetscInt rows = h->nrows;
+  PetscReal tlast = h->nrows ? h->rows[(size_t)(h->nrows - 1) * (size_t)h->ncols] : 0;
+  HistoryWorst worst = h->worst;
+
+  PetscFunctionBegin;
+  FrondMoveInt(s, "run/history_rows", &rows, 1);
+  FrondMoveReal(s, "run/history_last", &tlast, 1);
+  FrondMoveReal(s, "run/history_worst", (PetscReal *)&worst, sizeof(worst) / sizeof(PetscReal));
+  if (s->way == FROND_STATE_LOAD) {
+    PetscCall(fill_row(h, app, 0)); /* for the columns */
+    PetscCall(cut_back(h, rows, tlast));
+    h->worst = worst;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

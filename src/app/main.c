@@ -148,7 +148,7 @@ static int petsc_arguments(int argc, char **argv, char **out)
 
 int main(int argc, char **argv)
 {
-  AppErrors errors = {PETSC_FALSE, "", ""};
+  AppErrors errors = {PETSC_FALSE, PETSC_FALSE, "", ""};
   AppKnown known = {0, 0, NULL, PETSC_FALSE};
   int exitcode = 0, petscargc;
   char **petscargv = malloc(((size_t)argc + 1) * sizeof(char *)), **list = petscargv;
@@ -170,7 +170,8 @@ int main(int argc, char **argv)
   AppKnownFree(&known);
   free(list);
   fflush(NULL);
-  if (exitcode == APP_EXIT_IO) _exit(exitcode); /* HDF5 cleans up inside MPI_Finalize(), and crashes on a file it cannot write */
+  if (exitcode == APP_EXIT_IO || errors.files)
+    _exit(exitcode); /* HDF5 cleans up inside MPI_Finalize(), and crashes on a file it cannot write */
   MPI_Finalize();
   return exitcode;
 }

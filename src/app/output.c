@@ -78,10 +78,13 @@ static PetscBool is_result(const char name[])
   static const char *const fixed[] = {"run.xdmf",   "run.xdmf.part",   "history.csv",
                                       "history.h5", "history.h5.part", "settings.txt"};
   int number, end = 0;
+  long long step;
 
   for (size_t i = 0; i < sizeof(fixed) / sizeof(fixed[0]); i++)
     if (!strcmp(name, fixed[i])) return PETSC_TRUE;
   if (sscanf(name, "frame_%d.h5%n", &number, &end) == 1 && end && (!name[end] || !strcmp(name + end, ".part"))) return PETSC_TRUE;
+  if (sscanf(name, "checkpoint_%lld.h5%n", &step, &end) == 1 && end && (!name[end] || !strcmp(name + end, ".part")))
+    return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -133,7 +136,7 @@ PetscErrorCode AppOutputCreate(const App *app, AppOutput *output)
 
   PetscFunctionBegin;
   PetscCall(make_dir(app->scene.outdir));
-  PetscCall(clear_dir(app->scene.outdir, app->scene.overwrite));
+  if (!app->scene.restart[0]) PetscCall(clear_dir(app->scene.outdir, app->scene.overwrite));
   PetscCall(PetscNew(&out));
   *output = out;
   PetscCall(PetscStrncpy(out->dir, app->scene.outdir, sizeof(out->dir)));
@@ -321,6 +324,57 @@ PetscErrorCode AppOutputWrite(AppOutput out, App *app)
   series->time[series->nframes++] = app->t;
   out->tlast = app->t;
   PetscCall(PetscStrncpy(out->last, path, sizeof(out->last)));
+  PetscCall(AppXdmfWrite(out->dir, series));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Frames from number `first` on belong to a future that will be computed anew. */
+static PetscErrorCode cut_frames(AppOutput out)
+{
+  char path[2 * PETSC_MAX_PATH_LEN];
+  struct dirent *entry;
+  DIR *d = opendir(out->dir);
+  int number, end;
+
+  PetscFunctionBegin;
+  PetscCheck(d, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: cannot list '%s': %s", out->dir, strerror(errno));
+  while ((entry = readdir(d))) {
+    end = 0;
+    if (sscanf(entry->d_name, "frame_%d.h5%n", &number, &end) != 1 || !end ||
+        (!entry->d_name[end] && number < out->series.nframes))
+      continue;
+    if (entry->d_name[end] && strcmp(entry->d_name + end, ".part")) continue;
+    snprintf(path, sizeof(path), "%s/%s", out->dir, entry->d_name);
+    PetscCheck(!unlink(path), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: cannot remove '%s': %s", path, strerror(errno));
+  }
+  closedir(d);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppOutputMoveState(AppOutput out, FrondState *s)
+{
+  XdmfSeries *series = &out->series;
+  char name[32];
+
+  PetscFunctionBegin;
+  FrondMoveInt(s, "run/frames", &series->nframes, 1);
+  FrondMoveReal(s, "run/frame_last", &out->tlast, 1);
+  if (s->way == FROND_STATE_LOAD) {
+    PetscCheck(series->nframes >= 0 && series->nframes < 100000000, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+               "the checkpoint has %" PetscInt_FMT " frames", series->nframes);
+    out->alloc = series->nframes + 64;
+    PetscCall(PetscRealloc((size_t)out->alloc * sizeof(PetscReal), &series->time));
+  }
+  FrondMoveReal(s, "run/frame_times", series->time, series->nframes);
+  if (s->way != FROND_STATE_LOAD) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(cut_frames(out));
+  for (series->first = series->nframes; series->first > 0; series->first--) {
+    AppFrameName(series->first - 1, sizeof(name), name);
+    snprintf(out->last, sizeof(out->last), "%s/%s", out->dir, name);
+    if (access(out->last, R_OK)) break;
+  }
+  if (series->nframes) AppFrameName(series->nframes - 1, sizeof(name), name);
+  snprintf(out->last, sizeof(out->last), "%s/%s", out->dir, series->nframes ? name : "");
   PetscCall(AppXdmfWrite(out->dir, series));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

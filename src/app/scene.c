@@ -113,6 +113,12 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
       {OPT_SUBSET, "output_fields", "Fields of a frame (default: velocity, density, pressure, group)", s->field, SceneFields,
        NULL},
       {OPT_REAL, "progress_every", "Wall time between progress lines, s; 0: none", &s->progressevery, NULL, NULL},
+      {OPT_REAL, "checkpoint_every",
+       "Time between checkpoints, s; 0: every step; -1: none but when the run is interrupted or fails", &s->checkpointevery, NULL,
+       NULL},
+      {OPT_INT, "checkpoint_keep", "Checkpoints kept, the last ones", &s->checkpointkeep, NULL, NULL},
+      {OPT_STRING, "restart", "Checkpoint to go on from, or a folder whose last one is taken", s->restart, NULL, NULL},
+      {OPT_BOOL, "restart_changed", "Go on although options differ from those of the checkpoint", &s->restartchanged, NULL, NULL},
       {OPT_STRING, "fault_nan", "For tests: put NaN in field,marker before step (x|v|rho,number,number)", fault, NULL, NULL},
   };
 
@@ -124,6 +130,10 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
   if (!s->outdir[0]) PetscCall(PetscSNPrintf(s->outdir, sizeof(s->outdir), "out_%s", s->name));
   if (!set->outevery) s->outevery = s->tend / 40;
   if (!set->histevery) s->histevery = s->tend / 500;
+  PetscCheck(s->checkpointevery >= 0 || s->checkpointevery == -1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "checkpoint_every = %g s: must be >= 0, or -1 for none", (double)s->checkpointevery);
+  PetscCheck(s->checkpointkeep >= 1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "checkpoint_keep = %" PetscInt_FMT ": must be at least 1", s->checkpointkeep);
   PetscCall(read_fault(s, fault));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -315,6 +325,8 @@ PetscErrorCode AppSceneRead(AppScene *s, const char file[])
   PetscCall(PetscMemzero(s, sizeof(*s)));
   s->fluid = PETSC_TRUE;
   s->progressevery = 1;
+  s->checkpointevery = -1;
+  s->checkpointkeep = 3;
   for (PetscInt i = 0; i <= FIELD_GROUP; i++) s->field[i] = PETSC_TRUE;
   PetscCall(default_name(file, s->name));
   PetscCall(read_domain(s, &set));

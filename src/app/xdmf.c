@@ -102,7 +102,7 @@ PetscErrorCode AppXdmfWrite(const char dir[], const XdmfSeries *series)
           "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n <Domain>\n <Grid Name=\"%s\" GridType=\"Collection\" "
           "CollectionType=\"Temporal\">\n",
           app->scene.name);
-  for (PetscInt k = 0; k < series->nframes; k++) {
+  for (PetscInt k = series->first; k < series->nframes; k++) {
     AppFrameName(k, sizeof(frame), frame);
     fprintf(f, "  <Grid Name=\"frame_%d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n   <Time Value=\"%.15g\"/>\n",
             (int)k, (double)series->time[k]);

@@ -73,8 +73,8 @@ PetscErrorCode CoupleMoveState(Couple c, FrondState *s)
   PetscCheck(c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetUp() must come before CoupleMoveState()");
   PetscCall(SphMoveState(c->sph, s));
   FrondMoveInt(s, "couple/surfaces", &n, 1);
-  PetscCheck(n == n0, c->comm, PETSC_ERR_ARG_SIZ,
-             "the saved coupling has %" PetscInt_FMT " surfaces, this one %" PetscInt_FMT, n, n0);
+  PetscCheck(n == n0, c->comm, PETSC_ERR_ARG_SIZ, "the saved coupling has %" PetscInt_FMT " surfaces, this one %" PetscInt_FMT, n,
+             n0);
   FrondMoveInt(s, "couple/left", &c->left, 1);
   FrondMoveInt(s, "couple/iterations", &c->iterations, 1);
   FrondMoveInt(s, "couple/unconverged", &c->unconverged, 1);
