@@ -179,7 +179,8 @@ FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
   size, while the others begin anew (multistep methods at first order). n: reals.
 */
 FROND_EXTERN PetscErrorCode AncfGetPackSize(Ancf ancf, PetscInt *n);
-/* Pack, see AncfGetPackSize(), whose number of reals this takes; not between AncfGetLoadsEnd() and the end of the step. state: filled. */
+/* Pack, see AncfGetPackSize(), whose number of reals this takes; not between AncfGetLoadsEnd() and the end of the step. state:
+ * filled. */
 FROND_EXTERN PetscErrorCode AncfPack(Ancf ancf, PetscReal state[]);
 /* Whether AncfPack() leaves the run as it is. exact: whether. */
 FROND_EXTERN PetscErrorCode AncfGetPackExact(Ancf ancf, PetscBool *exact);
@@ -188,8 +189,8 @@ FROND_EXTERN PetscErrorCode AncfUnpack(Ancf ancf, const PetscReal state[]);
 /* The packed state and the counts of steps and iterations as named arrays, see frondstate.h. state: saved to or loaded from. */
 FROND_EXTERN PetscErrorCode AncfMoveState(Ancf ancf, FrondState *state);
 /*
-  For checkpoints of an own making: the acceleration that alpha2 carries from step to step. Without it alpha2 starts from the acceleration of
-  the equations of motion. A: nodes x 6, borrowed; NULL for other types.
+  For checkpoints of an own making: the acceleration that alpha2 carries from step to step. Without it alpha2 starts from the
+  acceleration of the equations of motion. A: nodes x 6, borrowed; NULL for other types.
 */
 FROND_EXTERN PetscErrorCode AncfGetHistory(Ancf ancf, const PetscReal **A);
 /* Set what AncfGetHistory() gave, after AncfSetState(). A: nodes x 6; NULL, or another type than alpha2: nothing is done. */
