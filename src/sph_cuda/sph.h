@@ -280,7 +280,7 @@ FROND_EXTERN PetscErrorCode SphSaveState(Sph sph, size_t bytes, void *buffer);
 /* Go back to a saved state. bytes: length of the buffer. buffer: what SphSaveState() wrote. */
 FROND_EXTERN PetscErrorCode SphRestoreState(Sph sph, size_t bytes, const void *buffer);
 
-/* The same state as named arrays that every backend reads, see frondstate.h. */
+/* The same state as named arrays that every backend reads, see frondstate.h. state: saved to or loaded from. */
 FROND_EXTERN PetscErrorCode SphMoveState(Sph sph, FrondState *state);
 
 /* Sums over fluid markers: mass (kg), linear momentum (kg m/s), kinetic energy (J), max speed (m/s), max |rho/rho0-1|. */
