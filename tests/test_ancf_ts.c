@@ -715,6 +715,8 @@ int main(int argc, char **argv)
   PetscCall(TestJacobian("-ancf_ts_type bdf", PETSC_FALSE));
   PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_damping 7", PETSC_TRUE));
   PetscCall(TestJacobian("-ancf_ts_type theta -ancf_damping 7", PETSC_FALSE));
+  PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_damping_stiffness 0.3", PETSC_TRUE));
+  PetscCall(TestJacobian("-ancf_ts_type bdf -ancf_damping_stiffness 0.3 -ancf_strain engineering", PETSC_FALSE));
   PetscCall(TestTypes());
   PetscCall(TestContinuation("-ancf_ts_type alpha2"));
   PetscCall(TestContinuation("-ancf_ts_type bdf"));

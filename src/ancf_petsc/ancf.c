@@ -102,6 +102,14 @@ static PetscErrorCode AncfCheckPositive(Ancf ancf, const char field[], PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AncfCheckNotNegative(Ancf ancf, const char field[], PetscReal x, const char unit[])
+{
+  PetscFunctionBegin;
+  PetscCheck(x >= 0 && !PetscIsInfOrNanReal(x), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": %s = %g %s must be finite and not negative", ancf->nbeams, field, (double)x, unit);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AncfCheckVector(Ancf ancf, const char field[], const PetscReal x[3])
 {
   PetscFunctionBegin;
@@ -127,6 +135,8 @@ static PetscErrorCode AncfBeamSection(Ancf ancf, const AncfBeamSpec *spec, AncfB
   PetscCall(AncfCheckPositive(ancf, "EA", beam->EA, "N"));
   PetscCall(AncfCheckPositive(ancf, "EI", beam->EI, "N m^2"));
   PetscCall(AncfCheckPositive(ancf, "rhoA", beam->rhoA, "kg/m"));
+  PetscCall(AncfCheckNotNegative(ancf, "axialdamping", spec->axialdamping, "s"));
+  PetscCall(AncfCheckNotNegative(ancf, "bendingdamping", spec->bendingdamping, "s"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -271,7 +281,7 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
 {
   PetscReal g[3];
   PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending, group = ancf->groupnodes;
-  PetscReal rho = ancf->fluiddensity, damping = ancf->damping;
+  PetscReal rho = ancf->fluiddensity, damping = ancf->damping, stiffness = ancf->stiffnessdamping;
   AncfStrain strain = ancf->strain;
   PetscBool flg, flg2;
 
@@ -296,6 +306,9 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   if (flg || flg2) PetscCall(AncfSetQuadrature(ancf, axial, bending));
   PetscCall(PetscOptionsReal("-ancf_damping", "Mass-proportional damping, 1/s", "AncfSetDamping", damping, &damping, &flg));
   if (flg) PetscCall(AncfSetDamping(ancf, damping));
+  PetscCall(PetscOptionsReal("-ancf_damping_stiffness", "Stiffness-proportional damping, s", "AncfSetStiffnessDamping", stiffness,
+                             &stiffness, &flg));
+  if (flg) PetscCall(AncfSetStiffnessDamping(ancf, stiffness));
   PetscCall(PetscOptionsInt("-ancf_group_nodes", "Nodes per group of beams with a TS of its own", "AncfSetGroupNodes", group,
                             &group, &flg));
   if (flg) PetscCall(AncfSetGroupNodes(ancf, group));
@@ -345,6 +358,7 @@ PetscErrorCode AncfSetUpBatches(Ancf ancf)
       batch->n = n % ANCF_LANES + 1;
       for (PetscInt i = n % ANCF_LANES; i < ANCF_LANES; i++) {
         batch->node[i] = beam->node + k;
+        batch->beam[i] = b;
         batch->EA[i] = beam->EA;
         batch->EI[i] = beam->EI;
         batch->rhoA[i] = beam->rhoA;
@@ -419,6 +433,7 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
   PetscCall(AncfSetUpBatches(ancf));
   PetscCall(AncfSetUpLaneBeams(ancf));
+  PetscCall(AncfSetUpDamping(ancf));
   PetscCall(AncfSetUpWeight(ancf));
   PetscCall(AncfMassFactor(ancf));
   if (ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
@@ -446,8 +461,9 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "gravity (%g, %g, %g) m/s^2, fluid density for buoyancy %g kg/m^3\n",
                                    (double)ancf->gravity[0], (double)ancf->gravity[1], (double)ancf->gravity[2],
                                    (double)ancf->fluiddensity));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "substeps %" PetscInt_FMT ", mass-proportional damping %g 1/s\n", ancf->substeps,
-                                   (double)ancf->damping));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer, "substeps %" PetscInt_FMT ", mass-proportional damping %g 1/s, stiffness-proportional damping %g s\n",
+      ancf->substeps, (double)ancf->damping, (double)ancf->stiffnessdamping));
   for (PetscInt b = 0; b < PetscMin(ancf->nbeams, 10); b++) {
     const AncfBeam *m = &ancf->beams[b];
 
@@ -456,6 +472,9 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
         "beam %" PetscInt_FMT ": %" PetscInt_FMT " elements, L %g m, d %g m, EA %g N, EI %g N m^2, rhoA %g kg/m, ends %s/%s\n", b,
         m->spec.elements, (double)(m->l * (PetscReal)m->spec.elements), (double)m->spec.diameter, (double)m->EA, (double)m->EI,
         (double)m->rhoA, AncfEnds[m->spec.end0], AncfEnds[m->spec.end1]));
+    if (m->spec.axialdamping > 0 || m->spec.bendingdamping > 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "        retardation times: axial %g s, bending %g s\n",
+                                       (double)m->spec.axialdamping, (double)m->spec.bendingdamping));
   }
   if (ancf->nbeams > 10) PetscCall(PetscViewerASCIIPrintf(viewer, "and %" PetscInt_FMT " more beams\n", ancf->nbeams - 10));
   if (ancf->setup) {
@@ -483,7 +502,8 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree(a->loadend));
   PetscCall(PetscFree(a->permanent));
   PetscCall(PetscFree(a->moment));
-  PetscCall(PetscFree3(a->motion, a->resta, a->restm));
+  PetscCall(PetscFree4(a->motion, a->resta, a->restm, a->restv));
+  PetscCall(PetscFree2(a->spin, a->spinsum));
   PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));

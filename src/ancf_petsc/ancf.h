@@ -24,15 +24,16 @@ typedef enum { ANCF_END_FREE, ANCF_END_PIN, ANCF_END_CLAMP } AncfEnd;
 
 /* Straight beam with a circular section; every field must be set. AncfBeamSpecInit() gives the defaults. */
 typedef struct {
-  PetscReal start[3];     /* first node, m */
-  PetscReal end[3];       /* last node, m; |end-start| is the rest length L */
-  PetscInt elements;      /* number of elements, >= 1 */
-  PetscReal diameter;     /* d, m: the outer diameter that the fluid sees; A = pi d^2/4, I = pi d^4/64 */
-  PetscReal density;      /* rho_s, kg/m^3 */
-  PetscReal young;        /* E, Pa */
-  PetscReal EA, EI, rhoA; /* overrides, N, N m^2, kg/m; PETSC_DECIDE (-1): derived from d, E, rho_s */
-  PetscReal velocity[3];  /* initial velocity, m/s */
-  AncfEnd end0, end1;     /* boundary conditions at start and end */
+  PetscReal start[3];                     /* first node, m */
+  PetscReal end[3];                       /* last node, m; |end-start| is the rest length L */
+  PetscInt elements;                      /* number of elements, >= 1 */
+  PetscReal diameter;                     /* d, m: the outer diameter that the fluid sees; A = pi d^2/4, I = pi d^4/64 */
+  PetscReal density;                      /* rho_s, kg/m^3 */
+  PetscReal young;                        /* E, Pa */
+  PetscReal axialdamping, bendingdamping; /* retardation times tau, s, of N = EA (eps + tau deps/dt) and M alike */
+  PetscReal EA, EI, rhoA;                 /* overrides, N, N m^2, kg/m; PETSC_DECIDE (-1): derived from d, E, rho_s */
+  PetscReal velocity[3];                  /* initial velocity, m/s */
+  AncfEnd end0, end1;                     /* boundary conditions at start and end */
 } AncfBeamSpec;
 
 /* An empty set of beams. comm: communicator of one rank: beams are not shared out among processes. ancf: the new set. */
@@ -77,6 +78,12 @@ FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscIn
   damping/(2 w). damping: 1/s, >= 0, default 0.
 */
 FROND_EXTERN PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping);
+/*
+  Internal damping proportional to the stiffness (Rayleigh): a mode of frequency w rad/s has the damping ratio damping w/2. It
+  acts as a retardation time of every beam in addition to those of its spec, and not on rigid motion. damping: s, not negative
+  (default 0). Before AncfSetUp().
+*/
+FROND_EXTERN PetscErrorCode AncfSetStiffnessDamping(Ancf ancf, PetscReal damping);
 /*
   Beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in cache; before
   AncfSetUp(). nodes: >= 1, default 1000.
@@ -214,6 +221,11 @@ FROND_EXTERN PetscErrorCode AncfSolveStatic(Ancf ancf, PetscInt loadsteps);
   A_outer) g.r, and of permanent point and line loads, J.
 */
 FROND_EXTERN PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, PetscReal *potential);
+/*
+  Power that damping takes from the beams now: damping v.M v, and the integral of EA tau (deps/dt)^2 + EI tau |kappa*|^2 with the
+  rate kappa* of the curvature seen from the section. power: W.
+*/
+FROND_EXTERN PetscErrorCode AncfGetDissipation(Ancf ancf, PetscReal *power);
 /*
   Each output may be NULL. p: 3, linear momentum, kg m/s. L: 3, angular momentum about the origin, integral of rho_s A r x
   rdot, kg m^2/s.

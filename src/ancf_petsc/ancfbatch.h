@@ -36,6 +36,20 @@ static inline AncfSection AncfBatchSection(const AncfBatch *b)
   return (AncfSection){AncfLoad(b->EA), AncfLoad(b->EI), AncfLoad(b->l)};
 }
 
+/* Clears rows and columns of eliminated coordinates of one lane's 12 x 12 row-major matrix. */
+static inline void AncfClearFixed(const Ancf ancf, const AncfBatch *b, PetscInt lane, PetscReal k[144])
+{
+  for (int side = 0; side < 2; side++) {
+    unsigned char fix = ancf->fixed[b->node[lane] + side];
+
+    if (PetscLikely(!fix)) continue;
+    for (int c = 0; c < 6; c++) {
+      if (!(fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
+      for (int j = 0; j < 12; j++) k[12 * (6 * side + c) + j] = k[12 * j + 6 * side + c] = 0;
+    }
+  }
+}
+
 /* Node k of each lane's beam; lanes past their end stay as they are. */
 static inline void AncfGatherLane(const Ancf ancf, const AncfLaneBeams *b, PetscInt k, const PetscReal *x, PetscInt stride,
                                   const PetscReal *fix, AncfLanes out[6])

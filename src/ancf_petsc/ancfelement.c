@@ -1,5 +1,5 @@
 /* ancfelement.c - shape functions, elastic force and tangent, mass and uniform load of the ANCF cable element. */
-#include "ancfelement.h"
+#include "ancfpoint.h"
 #include <petscdt.h>
 
 /* Symmetric 3 x 3 blocks are stored xx xy xz yy yz zz; the off-diagonal blocks are (0,1), (0,2), (1,2). */
@@ -78,33 +78,6 @@ PetscErrorCode AncfRuleSetUp(AncfRule *rule, AncfStrain strain, PetscInt naxial,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static inline AncfLanes LanesSqrt(AncfLanes a)
-{
-  for (int i = 0; i < ANCF_LANES; i++) a[i] = PetscSqrtReal(a[i]);
-  return a;
-}
-
-static inline AncfLanes Dot(const AncfLanes a[3], const AncfLanes b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Scaled coordinates d[0..2] = l r_0,x, r_1 - r_0, l r_1,x: the position vector's derivatives need only these. */
-static inline void Scaled(const AncfLanes e[12], AncfLanes l, AncfLanes d[3][3])
-{
-  for (int c = 0; c < 3; c++) {
-    d[0][c] = l * e[3 + c];
-    d[1][c] = e[6 + c] - e[c];
-    d[2][c] = l * e[9 + c];
-  }
-}
-
-/* r' or r'' from table row s; scale is 1/l or 1/l^2. */
-static inline void Derivative(AncfLanes d[3][3], const PetscReal s[3], AncfLanes scale, AncfLanes r[3])
-{
-  for (int c = 0; c < 3; c++) r[c] = (s[0] * d[0][c] + s[1] * d[1][c] + s[2] * d[2][c]) * scale;
-}
-
 /* Axial energy density EA f/2 with f(a) = eps^2, a = r'.r': f, df/da, d2f/da2. */
 static inline void AxialInvariant(AncfStrain strain, AncfLanes a, AncfLanes f[3])
 {
@@ -151,17 +124,6 @@ static inline void BendingHessian(AncfStrain strain, AncfLanes b, AncfLanes c, c
   v->ab = 2.0 * n * b * p * i;
   v->ac = (1 - n) * p;
   v->bb = -2.0 * p;
-}
-
-/* Generalised force from the derivatives q of the energy by the three scaled coordinates. */
-static inline void ForceExpand(AncfLanes q[3][3], AncfLanes l, AncfLanes Q[12])
-{
-  for (int c = 0; c < 3; c++) {
-    Q[c] = -q[1][c];
-    Q[3 + c] = l * q[0][c];
-    Q[6 + c] = q[1][c];
-    Q[9 + c] = l * q[2][c];
-  }
 }
 
 void AncfElementForce(const AncfRule *rule, const AncfSection *s, const AncfLanes e[12], AncfLanes Q[12], AncfLanes *U)

@@ -41,6 +41,10 @@ static PetscErrorCode AncfGroupCreate(Ancf ancf, PetscInt first, PetscInt last, 
   g->rest += 6 * node;
   g->fixed += node;
   g->mass += 8 * node;
+  if (ancf->viscous) {
+    g->spin += 3 * first;
+    g->spinsum += 9 * first;
+  }
   if (ancf->history) {
     g->history += 6 * node;
     g->eprev += 6 * node;

@@ -23,11 +23,12 @@ typedef struct {
   AncfBeamSpec spec;
   PetscInt node, element;          /* first ones */
   PetscReal l, EA, EI, rhoA, area; /* element length, m; section; outer area, m^2 */
+  PetscReal EAtau, EItau;          /* internal damping, N s, N m^2 s */
 } AncfBeam;
 
 /* Up to ANCF_LANES consecutive elements; unused lanes repeat the last one. */
 typedef struct {
-  PetscInt n, node[ANCF_LANES];
+  PetscInt n, node[ANCF_LANES], beam[ANCF_LANES];
   PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
 } AncfBatch;
 
@@ -48,8 +49,10 @@ struct _p_Ancf {
   AncfStrain strain;
   PetscInt naxial, nbending, substeps;
   AncfRule rule;
-  PetscReal gravity[3], fluiddensity, damping;
-  PetscReal *damped; /* a + damping v, nodes x 6 */
+  PetscReal gravity[3], fluiddensity, damping, stiffnessdamping;
+  PetscBool viscous;         /* some beam has internal damping */
+  PetscReal *spin, *spinsum; /* see ancfviscous.h: per beam 3 and, to work with, 9; NULL without internal damping */
+  PetscReal *damped;         /* a + damping v, nodes x 6 */
   PetscBool setup;
   AncfForm form;
   PetscBool fromoptions, exposed; /* AncfSetFromOptions() and AncfGetTS() were called */
@@ -67,7 +70,7 @@ struct _p_Ancf {
   PetscBool linear;               /* Q^a goes from load to loadend between the two times, s */
   PetscReal loadtime[2], loadnow; /* loadnow: where the residual is evaluated, 0..1 */
   PetscReal *rest, *resta;        /* eliminated coordinates and their accelerations; resta is NULL while none moves */
-  PetscReal *restm;               /* resta + damping times their velocities */
+  PetscReal *restm, *restv;       /* resta + damping times their velocities, these velocities */
   PetscReal *motion, motiontime;  /* e, v, a of moving nodes at that time, nodes x 18; NULL while none moves */
   AncfSupport *supports;
   PetscInt nsupports, maxsupports;
@@ -151,13 +154,26 @@ extern PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f);
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 
-/* ancfmat.c. P = tangent + shift M; diag on the diagonal of eliminated coordinates. Form and stride follow from the block size of
- * P. */
-extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P);
+/* ancfmat.c. P = tangent + shift M + gv (internal damping's dQ/dv, v may be NULL without); diag on the diagonal of eliminated
+ * coordinates. Form and stride follow from the block size of P. */
+extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal shift,
+                                   PetscReal gv, PetscReal diag, Mat J, Mat P);
 extern PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P);
 extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, PetscBool choose, Mat *J);
 /* Rows of eliminated coordinates: f = x - prescribed acceleration; x NULL: f = that acceleration. */
 extern void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride);
+
+/* ancfdamping.c: f += internal damping force, power (may be NULL) its power; f may be NULL. */
+extern PetscErrorCode AncfSetUpDamping(Ancf ancf);
+extern void AncfAddViscous(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *f, PetscInt fstride,
+                           PetscReal *power);
+extern void AncfSpin(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *spin);
+extern void AncfViscousBatch(Ancf ancf, const AncfBatch *b, const PetscReal *spin, const AncfLanes x[12], const PetscReal *v,
+                             PetscInt stride, PetscReal ge, PetscReal gv, AncfLanes H[81]);
+extern void AncfViscousChain(Ancf ancf, const PetscInt chain[ANCF_LANES], PetscInt k, const AncfLanes x[12], const PetscReal *v,
+                             const PetscReal *spin, PetscReal gv, AncfLanes K[ANCF_TANGENT]);
+extern PetscErrorCode AncfAssembleViscous(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal shift,
+                                          Mat P);
 
 /* ancfgroup.c */
 extern PetscErrorCode AncfGroupSetUp(Ancf ancf);

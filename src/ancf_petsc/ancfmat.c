@@ -3,6 +3,7 @@
   coordinates it was asked at and made block by block when the solver needs it.
 */
 #include "ancfbatch.h"
+#include "ancfviscous.h"
 #include "blocktri.h"
 
 #if PETSC_VERSION_LT(3, 24, 0)
@@ -15,6 +16,7 @@ typedef PetscErrorCodeFn *AncfOperation;
 typedef struct {
   Ancf ancf;
   PetscReal *e, shift, diag; /* linearised here; shift of M; diagonal of eliminated coordinates */
+  PetscReal *v, *spin, gv;   /* internal damping: velocities, spin, shift of its dQ/dv */
   PetscBool identity;        /* diag times the identity, nothing else */
   PetscInt *first, *length;  /* chains of the source */
   BlockTriSource source;
@@ -31,15 +33,7 @@ static inline void AncfElementMatrix(Ancf ancf, const AncfBatch *b, PetscInt lan
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
       for (int c = 0; c < 3; c++) k[12 * (3 * i + c) + 3 * j + c] += shift * m[4 * i + j];
-  for (int side = 0; side < 2; side++) {
-    unsigned char fix = ancf->fixed[b->node[lane] + side];
-
-    if (PetscLikely(!fix)) continue;
-    for (int c = 0; c < 6; c++) {
-      if (!(fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
-      for (int j = 0; j < 12; j++) k[12 * (6 * side + c) + j] = k[12 * j + 6 * side + c] = 0;
-    }
-  }
+  AncfClearFixed(ancf, b, lane, k);
 }
 
 /*
@@ -130,7 +124,8 @@ static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, PetscReal diag, Mat J, Mat P)
+PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal shift, PetscReal gv,
+                            PetscReal diag, Mat J, Mat P)
 {
   PetscBool shell;
 
@@ -145,9 +140,15 @@ PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, PetscInt stride, Pets
     s->shift = shift;
     s->diag = diag;
     s->identity = PETSC_FALSE;
+    if (s->v) {
+      AncfSpin(ancf, e, v, stride, s->spin);
+      PetscCall(PetscArraycpy(s->v, v, 6 * ancf->nnodes));
+      s->gv = gv;
+    }
   } else {
     PetscCall(MatZeroEntries(P));
     PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
+    if (v) PetscCall(AncfAssembleViscous(ancf, e, v, stride, gv, P));
     PetscCall(AncfAssembleMoments(ancf, e, stride, P));
     PetscCall(AncfAssembleNodes(ancf, diag, P));
   }
@@ -306,6 +307,7 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
       mass[i] = s->shift * b->rhoA * b->l;
     }
     AncfElementTangent(&s->ancf->rule, &sec, e, Q, K);
+    if (s->v) AncfViscousChain(s->ancf, chain, k, e, s->v, s->spin, s->gv, K);
     ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];
   }
@@ -329,13 +331,18 @@ static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
   for (PetscInt n = 0; n < ancf->nbatches && !s->identity; n++) {
     const AncfBatch *b = &ancf->batches[n];
     AncfSection sec = AncfBatchSection(b);
-    AncfLanes e[12], Q[12], K[ANCF_TANGENT];
+    AncfLanes e[12], Q[12], K[ANCF_TANGENT], H[81];
     PetscReal k[144];
 
     AncfGather(ancf, b, s->e, 6, ancf->rest, e);
     AncfElementTangent(&ancf->rule, &sec, e, Q, K);
+    if (s->v) AncfViscousBatch(ancf, b, s->spin, e, s->v, 6, 1, s->gv, H);
     for (PetscInt i = 0; i < b->n; i++) {
       AncfElementMatrix(ancf, b, i, K, s->shift, k);
+      if (s->v) {
+        AncfScaledExpand(H, sec.l, i, k);
+        AncfClearFixed(ancf, b, i, k);
+      }
       for (int r = 0; r < 12; r++)
         for (int c = 0; c < 12; c++) y[6 * b->node[i] + r] += k[12 * r + c] * x[6 * b->node[i] + c];
     }
@@ -361,6 +368,7 @@ static PetscErrorCode ShellDestroy(Mat A)
   PetscFunctionBegin;
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(PetscFree3(s->e, s->first, s->length));
+  PetscCall(PetscFree2(s->v, s->spin));
   PetscCall(PetscFree(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -373,6 +381,7 @@ static PetscErrorCode AncfCreateShell(Ancf ancf, Mat *J)
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
   PetscCall(PetscMalloc3(n, &s->e, ancf->nbeams, &s->first, ancf->nbeams, &s->length));
+  if (ancf->viscous) PetscCall(PetscMalloc2(n, &s->v, 3 * ancf->nbeams, &s->spin));
   for (PetscInt b = 0; b < ancf->nbeams; b++) {
     s->first[b] = ancf->beams[b].node;
     s->length[b] = ancf->beams[b].spec.elements + 1;
@@ -409,7 +418,7 @@ static PetscErrorCode AncfCreateStored(Ancf ancf, PetscInt bs, Mat *J)
   PetscCall(MatSetFromOptions(*J));
   PetscCall(MatXAIJSetPreallocation(*J, bs, nnz, NULL, upper, NULL));
   PetscCall(PetscFree2(nnz, upper));
-  PetscCall(MatSetOption(*J, MAT_SYMMETRIC, bs == 6 ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(MatSetOption(*J, MAT_SYMMETRIC, bs == 6 && !ancf->viscous ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(PetscObjectTypeCompare((PetscObject)*J, MATSEQSBAIJ, &sbaij));
   if (sbaij) PetscCall(MatSetOption(*J, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   for (PetscInt b = 0; b < ancf->nbeams; b++) {

@@ -51,6 +51,7 @@ static void MoveNodes(Ancf ancf, PetscReal t, PetscBool state)
       if (!(ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) continue;
       ancf->rest[6 * j + c] = m[c] + tau * (m[6 + c] + 0.5 * tau * m[12 + c]);
       ancf->resta[6 * j + c] = m[12 + c];
+      ancf->restv[6 * j + c] = m[6 + c] + tau * m[12 + c];
       ancf->restm[6 * j + c] = m[12 + c] + ancf->damping * (m[6 + c] + tau * m[12 + c]);
       if (!state) continue;
       ancf->e[6 * j + c] = ancf->rest[6 * j + c];
@@ -81,13 +82,15 @@ PetscErrorCode AncfMotionCreate(Ancf ancf)
 {
   PetscFunctionBegin;
   if (ancf->motion) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc3(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm));
+  PetscCall(PetscCalloc4(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm,
+                         6 * ancf->nnodes, &ancf->restv));
   for (PetscInt k = 0; k < ancf->ngroups; k++) {
     const PetscInt first = ancf->beams[ancf->groups[k]->firstbeam].node;
 
     ancf->groups[k]->motion = ancf->motion + 18 * first;
     ancf->groups[k]->resta = ancf->resta + 6 * first;
     ancf->groups[k]->restm = ancf->restm + 6 * first;
+    ancf->groups[k]->restv = ancf->restv + 6 * first;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,7 +26,7 @@ static PetscErrorCode StaticJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(AncfAssemble((Ancf)ctx, x, 6, 0, 1, J, P));
+  PetscCall(AncfAssemble((Ancf)ctx, x, NULL, 6, 0, 0, 1, J, P));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

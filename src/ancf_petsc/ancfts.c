@@ -174,6 +174,7 @@ PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f)
   PetscCall(AncfComputeAcceleration(ancf));
   a = AncfDamped(ancf, ancf->v, ancf->a, 6, &stride);
   PetscCall(AncfResidual(ancf, ancf->e, 6, a, stride, f, 6));
+  AncfAddViscous(ancf, ancf->e, ancf->v, 6, f, 6, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,6 +199,7 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
     const PetscReal *m = AncfDamped(ancf, v, a, 6, &stride);
 
     PetscCall(AncfResidual(ancf, u, 6, m, stride, f, 6));
+    AncfAddViscous(ancf, u, v, 6, f, 6, NULL);
     AncfFixRows(ancf, a, 6, f, 6);
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -210,18 +212,19 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
 static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shiftV, PetscReal shiftA, Mat J, Mat P,
                                      void *ctx)
 {
-  const PetscScalar *u;
+  const PetscScalar *u, *v;
 
   PetscFunctionBegin;
   (void)ts;
   (void)t;
-  (void)V;
   (void)A;
   PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(VecGetArrayRead(V, &v));
   if (((Ancf)ctx)->priming)
     PetscCall(AncfAssembleIdentity((Ancf)ctx, shiftA, P));
   else
-    PetscCall(AncfAssemble((Ancf)ctx, u, 6, shiftA + ((Ancf)ctx)->damping * shiftV, shiftA, J, P));
+    PetscCall(AncfAssemble((Ancf)ctx, u, v, 6, shiftA + ((Ancf)ctx)->damping * shiftV, shiftV, shiftA, J, P));
+  PetscCall(VecRestoreArrayRead(V, &v));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -243,6 +246,7 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
   PetscCall(VecGetArrayWrite(F, &f));
   m = AncfDamped(ancf, y + 6, yd + 6, 12, &stride);
   PetscCall(AncfResidual(ancf, y, 12, m, stride, f + 6, 12));
+  AncfAddViscous(ancf, y, y + 6, 12, f + 6, 12, NULL);
   AncfFixRows(ancf, yd + 6, 12, f + 6, 12);
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) f[c] = yd[c] - y[c + 6];
@@ -261,7 +265,7 @@ static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscRe
   (void)t;
   (void)Ydot;
   PetscCall(VecGetArrayRead(Y, &y));
-  PetscCall(AncfAssemble((Ancf)ctx, y, 12, shift + ((Ancf)ctx)->damping, shift, J, P));
+  PetscCall(AncfAssemble((Ancf)ctx, y, y + 6, 12, shift + ((Ancf)ctx)->damping, 1, shift, J, P));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -274,6 +278,7 @@ PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const Pet
 
   PetscFunctionBegin;
   PetscCall(AncfResidual(ancf, e, stride, ancf->restm, 6, a, astride));
+  if (v) AncfAddViscous(ancf, e, v, stride, a, astride, NULL);
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
   AncfFixRows(ancf, NULL, 0, a, astride);
@@ -524,6 +529,11 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCheck(ancf->damping == 0 || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
              "-ancf_damping %g needs another -ancf_ts_type than basicsymplectic, which takes no velocities",
              (double)ancf->damping);
+  PetscCheck(
+      !ancf->viscous || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
+      "-ancf_damping_stiffness %g and beams with axial or bending damping need another -ancf_ts_type than basicsymplectic, "
+      "which takes no velocities",
+      (double)ancf->stiffnessdamping);
   if (ancf->damping > 0) PetscCall(PetscMalloc1(6 * ancf->nnodes, &ancf->damped));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetKSP(snes, &ksp));

@@ -63,7 +63,7 @@ static PetscErrorCode put3(AppHistory h, const char stem[], const char unit[], c
 static PetscErrorCode put_beams(AppHistory h, App *app)
 {
   const char *energy = app->dim == 2 ? "J/m" : "J";
-  PetscReal kinetic, elastic, potential, r[3], v[3], reaction[3], L;
+  PetscReal kinetic, elastic, potential, dissipation, r[3], v[3], reaction[3], L;
   char stem[96];
   PetscInt steps, newton, linear;
 
@@ -83,6 +83,8 @@ static PetscErrorCode put_beams(AppHistory h, App *app)
   PetscCall(put(h, "beams_kinetic", energy, "kinetic energy of all beams", kinetic));
   PetscCall(put(h, "beams_elastic", energy, "elastic energy of all beams", elastic));
   PetscCall(put(h, "beams_potential", energy, "potential energy of all beams", potential));
+  PetscCall(AncfGetDissipation(app->ancf, &dissipation));
+  PetscCall(put(h, "beams_dissipation", app->dim == 2 ? "W/m" : "W", "power that damping takes from the beams", dissipation));
   PetscCall(AncfGetReaction(app->ancf, reaction));
   PetscCall(put3(h, "beams_support_", app->dim == 2 ? "N/m" : "N", "force of the supports on all beams", reaction));
   PetscCall(AncfGetCounts(app->ancf, &steps, &newton, &linear));

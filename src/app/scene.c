@@ -155,6 +155,8 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], AncfBea
       {OPT_REAL, "EI", "Bending stiffness in place of E and diameter, N m^2; 2D: N m (-1: derived)", &spec->EI, NULL, &stiff[1]},
       {OPT_REAL, "rhoA", "Mass per length in place of density and diameter, kg/m; 2D: kg/m^2 (-1: derived)", &spec->rhoA, NULL,
        &stiff[2]},
+      {OPT_REAL, "axial_damping", "Retardation time of the axial strain (Kelvin-Voigt), s", &spec->axialdamping, NULL, NULL},
+      {OPT_REAL, "bending_damping", "Retardation time of the curvature (Kelvin-Voigt), s", &spec->bendingdamping, NULL, NULL},
       {OPT_VEC, "velocity", "Initial velocity, m/s", spec->velocity, NULL, NULL},
       {OPT_CHOICE, "end0", "Support of the first end", &end0, ends, NULL},
       {OPT_CHOICE, "end1", "Support of the last end", &end1, ends, NULL},

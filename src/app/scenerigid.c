@@ -42,6 +42,9 @@ static PetscErrorCode lumped_from_beam(const SceneBeam *beam, SceneLumped *lumpe
   PetscFunctionBegin;
   PetscCheck(from->EA == PETSC_DECIDE, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
              "beam_%s_EA = %g: a lumped beam has no axial elasticity; leave it out", beam->name, (double)from->EA);
+  PetscCheck(from->axialdamping == 0 && from->bendingdamping == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "beam_%s_axial_damping = %g, bending_damping = %g s: a lumped beam is damped by beam_%s_hinge_damping", beam->name,
+             (double)from->axialdamping, (double)from->bendingdamping, beam->name);
   PetscCheck(spec->trunks >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "beam_%s_trunks = %" PetscInt_FMT " must be 1 or more (0: as many as elements)", beam->name, spec->trunks);
   PetscCall(PetscStrncpy(lumped->name, beam->name, APP_NAME_LEN));
