@@ -356,6 +356,88 @@ static PetscErrorCode TestOddBodies(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A wall is a fixed box without edges: a sphere feels the same, a box rests on it; bodies joined to the ground feel nothing. */
+static PetscErrorCode TestWall(void)
+{
+  Rigid r;
+  RigidBodySpec s;
+  ShortRange p;
+  RigidJointSpec j;
+  PetscReal A[2][3], X[3], V[3], w[3];
+  const PetscReal x[3] = {3., 1., 0.}, n[3] = {0., 0., 2.}, g[3] = {0., 0., -10.}, zero[3] = {0., 0., 0.};
+
+  PetscFunctionBegin;
+  PetscCall(ShortRangeInit(&p));
+  p.viscosity = .5, p.cutoff = .05, p.roughness = 2e-3, p.modulus = 1e5, p.restitution = .7;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+    PetscCall(RigidSetShortRange(r, &p));
+    PetscCall(RigidSetShortRangeSpacing(r, .1));
+    PetscCall(RigidBodySpecInit(&s));
+    s.size[0] = .1;
+    s.position[2] = .1015; /* both forces act */
+    s.velocity[2] = -.1;
+    PetscCall(RigidAddBody(r, &s, NULL));
+    if (k)
+      PetscCall(RigidAddWall(r, x, n));
+    else {
+      s.shape = RIGID_BOX;
+      s.motion = RIGID_FIXED;
+      for (int c = 0; c < 3; c++) s.size[c] = 1.;
+      s.position[2] = -.5;
+      PetscCall(RigidAddBody(r, &s, NULL));
+    }
+    PetscCall(RigidSetUp(r));
+    PetscCall(RigidAdvance(r, 1e-6));
+    PetscCall(RigidGetAcceleration(r, 0, A[k], NULL));
+    PetscCall(RigidDestroy(&r));
+  }
+  TEST_REL(A[1][2], A[0][2], 1e-6, "sphere at a wall and at a box"); /* the box's normal is by differences */
+  TEST(A[0][2] > 1., "no force: %g", A[0][2]);
+
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+  p.viscosity = 0., p.restitution = .3, p.modulus = 1e7;
+  PetscCall(RigidSetShortRange(r, &p));
+  PetscCall(RigidSetShortRangeSpacing(r, .1));
+  PetscCall(RigidSetGravity(r, g));
+  PetscCall(RigidBodySpecInit(&s));
+  s.shape = RIGID_BOX;
+  s.size[0] = .3, s.size[1] = .2, s.size[2] = .4;
+  s.position[2] = .25;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  s.position[0] = 1.; /* hangs with its foot in the wall */
+  s.position[2] = .15;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidJointSpecInit(&j));
+  j.a = 1, j.b = RIGID_GROUND;
+  j.point[0] = 1., j.point[2] = 1.;
+  PetscCall(RigidAddJoint(r, &j, NULL));
+  PetscCall(RigidAddWall(r, x, n));
+  PetscCall(RigidSetUp(r));
+  PetscCall(RigidCheckOverlap(r, .1));
+  for (int m = 1; m <= 20000; m++) PetscCall(RigidAdvance(r, m * 1e-4));
+  PetscCall(RigidGetState(r, 0, X, NULL, V, w));
+  TEST(X[2] - .2 > 0. && X[2] - .2 < p.roughness, "box on a wall: gap %g m", X[2] - .2);
+  TEST(fabs(V[2]) < 1e-3 && fabs(w[0]) + fabs(w[1]) < 1e-3, "does not rest: %g m/s", V[2]);
+  PetscCall(RigidGetState(r, 1, X, NULL, V, NULL));
+  TEST_NEAR(X[2], .15, 1e-12, "joined to the ground, not pushed by the wall");
+  PetscCall(RigidDestroy(&r));
+
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+  PetscCall(RigidBodySpecInit(&s));
+  s.size[0] = .5;
+  s.position[2] = .25;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidAddWall(r, x, n));
+  PetscCall(RigidSetUp(r));
+  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  Refused(RigidCheckOverlap(r, .1), "body in a wall", "body 0 (sphere) overlaps the wall", "by 0.25");
+  Refused(RigidAddWall(r, x, zero), "a wall without normal", "RigidAddWall()", "longer than 0");
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(RigidDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A gas of 400 spheres in a periodic box: elastic collisions keep momentum and energy, no pair overlaps (checked by brute force).
  */
 static PetscErrorCode TestCrowd(void)
@@ -509,6 +591,7 @@ int main(int argc, char **argv)
   PetscCall(TestHertz(.6));
   PetscCall(TestPlates());
   PetscCall(TestOddBodies());
+  PetscCall(TestWall());
   PetscCall(TestCrowd());
   PetscCall(TestBadInput());
   PetscCall(PetscFinalize());

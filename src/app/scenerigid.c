@@ -223,7 +223,7 @@ PetscErrorCode AppBuildJoints(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Spacing of the fluid and period of the domain, for the short-range forces; options given for them win. */
+/* Spacing of the fluid, period and walls of the domain, for the short-range forces; options given for the spacing win. */
 PetscErrorCode AppBuildShortRange(App *app)
 {
   const AppScene *s = &app->scene;
@@ -236,6 +236,12 @@ PetscErrorCode AppBuildShortRange(App *app)
   for (PetscInt a = 0; a < app->dim; a++)
     if (s->periodic[a]) period[a] = s->hi[a] - s->lo[a];
   PetscCall(RigidSetPeriod(app->rigid, period));
+  for (int f = 0; f < 2 * app->dim; f++) {
+    const PetscReal *x = f % 2 ? s->hi : s->lo;
+    PetscReal n[3] = {0, 0, 0};
+    n[f / 2] = f % 2 ? -1 : 1;
+    if (s->wall[f]) PetscCall(RigidAddWall(app->rigid, x, n));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -279,5 +285,8 @@ PetscErrorCode AppCheckOverlap(App *app)
   if (ierr && app->errors && sscanf(app->errors->message, "Rigid bodies %d (%*[a-z]) and %d", &i, &j) == 2 && i >= 0 && j >= 0 &&
       i < s->nbodies && j < s->nbodies)
     AppDoing(app, "bodies '%.40s' and '%.40s'", s->bodies[i].name, s->bodies[j].name);
+  else if (ierr && app->errors && sscanf(app->errors->message, "Rigid body %d (%*[a-z]) overlaps", &i) == 1 && i >= 0 &&
+           i < s->nbodies)
+    AppDoing(app, "body '%.40s'", s->bodies[i].name);
   PetscFunctionReturn(ierr);
 }

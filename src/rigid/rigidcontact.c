@@ -6,35 +6,8 @@
   contacts of gamma (1/m + (r x n).J^-1 (r x n)), a kick of length h takes F = -gamma v_n/(1 + h (G_i + G_j)): the implicit
   Euler value for a lone pair, and never more than that for crowds, since the resistance of all pairs is bounded by their sum.
 */
-#include "rigidgeometry.h"
+#include "rigidcontact.h"
 #include <stdlib.h>
-
-typedef struct {
-  PetscInt i, j;
-} Pair;
-
-/* n points from j to i; ri, rj: from the centres of mass to the point of action; s: gap. */
-typedef struct {
-  PetscInt i, j;
-  PetscReal n[3], ri[3], rj[3], s, gamma, R, share;
-} Contact;
-
-struct _p_RigidContact {
-  PetscInt nbodies;
-  PetscReal reach;       /* m */
-  PetscReal *radius;     /* of each body's bounding sphere, m */
-  RigidMarkers *surface; /* of each body, body frame; empty for spheres */
-  PetscInt njoined;
-  Pair *joined;                 /* sorted */
-  PetscReal small;              /* bodies of larger radius, walls say, are tried against all others, m */
-  PetscInt nhead, *head, *next; /* grid of the others: first body of a cell, next body in it */
-  PetscInt npairs, npairalloc;
-  Pair *pair;
-  PetscInt n, nalloc;
-  Contact *contact;
-  PetscReal *G;         /* 1/s, of each body */
-  RigidMarkers near[2]; /* surface points of a pair that face the other body, space frame */
-};
 
 static PetscBool IsRound(const RigidBodySpec *s, PetscInt dim)
 {
@@ -62,13 +35,6 @@ static PetscReal BoundingRadius(const RigidBodySpec *s, PetscInt dim)
   }
 }
 
-static int ComparePairs(const void *pa, const void *pb)
-{
-  const Pair *a = (const Pair *)pa, *b = (const Pair *)pb;
-  if (a->i != b->i) return a->i < b->i ? -1 : 1;
-  return a->j < b->j ? -1 : (a->j > b->j);
-}
-
 static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spacing, RigidContact *contact)
 {
   RigidContact c;
@@ -85,7 +51,7 @@ static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spac
     c->joined[c->njoined].i = PetscMin(rigid->joint[j].spec.a, rigid->joint[j].spec.b);
     c->joined[c->njoined++].j = PetscMax(rigid->joint[j].spec.a, rigid->joint[j].spec.b);
   }
-  qsort(c->joined, (size_t)c->njoined, sizeof(Pair), ComparePairs);
+  qsort(c->joined, (size_t)c->njoined, sizeof(Pair), RigidComparePairs);
   for (PetscInt i = 0; i < rigid->n; i++) {
     const RigidBodySpec *s = &rigid->body[i].spec;
     c->radius[i] = BoundingRadius(s, rigid->dim);
@@ -151,124 +117,11 @@ PetscErrorCode RigidContactSetUp(Rigid rigid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal NearestImage(PetscReal d, PetscReal period)
-{
-  return period > 0. ? d - period * PetscFloorReal(d / period + .5) : d;
-}
-
-static PetscErrorCode AddPair(Rigid rigid, RigidContact c, PetscInt a, PetscInt b)
-{
-  const Pair p = {PetscMin(a, b), PetscMax(a, b)};
-  const PetscReal reach = c->radius[a] + c->radius[b] + c->reach;
-  PetscReal d2 = 0.;
-
-  PetscFunctionBegin;
-  if (a == b || (rigid->body[a].spec.motion != RIGID_FREE && rigid->body[b].spec.motion != RIGID_FREE))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < 3; k++) d2 += PetscSqr(NearestImage(rigid->body[a].X[k] - rigid->body[b].X[k], rigid->period[k]));
-  if (d2 > reach * reach) PetscFunctionReturn(PETSC_SUCCESS);
-  if (c->njoined && bsearch(&p, c->joined, (size_t)c->njoined, sizeof(Pair), ComparePairs)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (c->npairs == c->npairalloc) {
-    c->npairalloc = 2 * c->npairalloc + 64;
-    PetscCall(PetscRealloc(sizeof(Pair) * (size_t)c->npairalloc, &c->pair));
-  }
-  c->pair[c->npairs++] = p;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Grid of cells no smaller than the reach of small bodies and no more than 8 n in number; the period or the bodies' box. */
-static void GridSize(Rigid rigid, const RigidContact c, PetscReal lo[3], PetscReal cell[3], PetscInt n[3])
-{
-  const PetscInt most = 8 * rigid->n + 8;
-  PetscReal size = 2. * c->small + c->reach, length[3];
-  for (int k = 0; k < 3; k++) {
-    PetscReal hi = 0.;
-    lo[k] = 0.;
-    for (PetscInt i = 0; i < rigid->n && rigid->period[k] == 0.; i++) {
-      lo[k] = i ? PetscMin(lo[k], rigid->body[i].X[k]) : rigid->body[i].X[k];
-      hi = i ? PetscMax(hi, rigid->body[i].X[k]) : rigid->body[i].X[k];
-    }
-    length[k] = rigid->period[k] > 0. ? rigid->period[k] : hi - lo[k];
-  }
-  do {
-    PetscReal total = 1.;
-    for (int k = 0; k < 3; k++) {
-      n[k] = PetscMax(1, (PetscInt)PetscMin(length[k] / size, 1.e6));
-      cell[k] = length[k] > 0. ? length[k] / (PetscReal)n[k] : 1.;
-      total *= (PetscReal)n[k];
-    }
-    if (total <= (PetscReal)most) return;
-    size *= 1.26;
-  } while (PETSC_TRUE);
-}
-
-static void GridCell(Rigid rigid, const PetscReal X[3], const PetscReal lo[3], const PetscReal cell[3], const PetscInt n[3],
-                     PetscInt id[3])
-{
-  for (int k = 0; k < 3; k++) {
-    const PetscReal L = rigid->period[k], x = L > 0. ? X[k] - L * PetscFloorReal(X[k] / L) : X[k] - lo[k];
-    id[k] = PetscMax(0, PetscMin(n[k] - 1, (PetscInt)(x / cell[k])));
-  }
-}
-
-/* Bodies of the 27 cells around that of body i which come before it in the lists built so far. */
-static PetscErrorCode GridNeighbours(Rigid rigid, RigidContact c, PetscInt i, const PetscInt id[3], const PetscInt n[3])
-{
-  PetscFunctionBegin;
-  for (int m = 0; m < 27; m++) {
-    PetscInt at[3] = {id[0] + m % 3 - 1, id[1] + m / 3 % 3 - 1, id[2] + m / 9 - 1};
-    PetscBool outside = PETSC_FALSE;
-    for (int k = 0; k < 3; k++) {
-      if (rigid->period[k] > 0.)
-        at[k] = (at[k] + n[k]) % n[k];
-      else if (at[k] < 0 || at[k] >= n[k])
-        outside = PETSC_TRUE;
-    }
-    if (outside) continue;
-    for (PetscInt j = c->head[at[0] + n[0] * (at[1] + n[1] * at[2])]; j >= 0; j = c->next[j]) PetscCall(AddPair(rigid, c, i, j));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Pairs whose bounding spheres are within reach, sorted. */
-static PetscErrorCode FindPairs(Rigid rigid, RigidContact c)
-{
-  PetscReal lo[3], cell[3];
-  PetscInt n[3], total, m = 0;
-
-  PetscFunctionBegin;
-  GridSize(rigid, c, lo, cell, n);
-  total = n[0] * n[1] * n[2];
-  if (total > c->nhead) {
-    PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)total, &c->head));
-    c->nhead = total;
-  }
-  for (PetscInt k = 0; k < total; k++) c->head[k] = -1;
-  c->npairs = 0;
-  for (PetscInt i = 0; i < rigid->n; i++) {
-    PetscInt id[3], at;
-    if (c->radius[i] > c->small) {
-      for (PetscInt j = 0; j < rigid->n; j++) PetscCall(AddPair(rigid, c, i, j));
-      continue;
-    }
-    GridCell(rigid, rigid->body[i].X, lo, cell, n, id);
-    PetscCall(GridNeighbours(rigid, c, i, id, n));
-    at = id[0] + n[0] * (id[1] + n[1] * id[2]);
-    c->next[i] = c->head[at];
-    c->head[at] = i;
-  }
-  if (c->npairs) qsort(c->pair, (size_t)c->npairs, sizeof(Pair), ComparePairs);
-  for (PetscInt k = 0; k < c->npairs; k++)
-    if (m == 0 || ComparePairs(&c->pair[k], &c->pair[m - 1])) c->pair[m++] = c->pair[k];
-  c->npairs = m;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Place of body j as seen from body i: its nearest image. */
 static void ImageOf(Rigid rigid, PetscInt i, PetscInt j, PetscReal X[3])
 {
   for (int k = 0; k < 3; k++)
-    X[k] = rigid->body[i].X[k] - NearestImage(rigid->body[i].X[k] - rigid->body[j].X[k], rigid->period[k]);
+    X[k] = rigid->body[i].X[k] - RigidNearestImage(rigid->body[i].X[k] - rigid->body[j].X[k], rigid->period[k]);
 }
 
 /* Gap between a point x and body j placed at X; n, if not NULL: normal of its surface there, space frame. */
@@ -399,6 +252,32 @@ static PetscErrorCode AnyAny(Rigid rigid, RigidContact c, PetscInt i, PetscInt j
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Body i and a wall: the sphere, or every surface marker, against a plane. */
+static PetscErrorCode AnyWall(Rigid rigid, RigidContact c, PetscInt i, const RigidWall *w)
+{
+  const RigidBody *b = &rigid->body[i];
+  const PetscBool round = IsRound(&b->spec, rigid->dim);
+  const PetscReal a = round ? c->radius[i] : 0.;
+  const Pair ground = {RIGID_GROUND, i};
+  const PetscReal d[3] = {b->X[0] - w->x[0], b->X[1] - w->x[1], b->X[2] - w->x[2]};
+
+  PetscFunctionBegin;
+  if (b->spec.motion != RIGID_FREE || Vec3Dot(w->n, d) > c->radius[i] + c->reach) PetscFunctionReturn(PETSC_SUCCESS);
+  if (c->njoined && bsearch(&ground, c->joined, (size_t)c->njoined, sizeof(Pair), RigidComparePairs))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < (round ? 1 : c->surface[i].n); k++) {
+    PetscReal o[3] = {0., 0., 0.}, x[3], s;
+    if (!round) QuatRotate(b->q, &c->surface[i].x[3 * k], o);
+    s = Vec3Dot(w->n, d) + Vec3Dot(w->n, o) - a;
+    if (s >= c->reach) continue;
+    for (int m = 0; m < 3; m++) x[m] = b->X[m] + o[m] - (a + .5 * s) * w->n[m];
+    PetscCall(AddContact(rigid, c, i, RIGID_WALL, x, w->n, x, s,
+                         ShortRangeSphere(&rigid->shortrange, round ? a : rigid->spacing, PETSC_INFINITY, s),
+                         round ? a : .5 * rigid->spacing, 1.));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode FindContacts(Rigid rigid, RigidContact c)
 {
   PetscFunctionBegin;
@@ -415,6 +294,8 @@ static PetscErrorCode FindContacts(Rigid rigid, RigidContact c)
     else
       PetscCall(AnyAny(rigid, c, i, j));
   }
+  for (PetscInt i = 0; i < rigid->n; i++)
+    for (PetscInt k = 0; k < rigid->nwalls; k++) PetscCall(AnyWall(rigid, c, i, &rigid->wall[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -429,17 +310,30 @@ static PetscReal InverseMass(const RigidBody *b, const PetscReal n[3], const Pet
   return w;
 }
 
+static void AddVelocity(const RigidBody *b, const PetscReal r[3], PetscReal sign, PetscReal v[3])
+{
+  PetscReal w[3], x[3];
+  RigidBodyOmega(b, b->q, w);
+  Vec3Cross(w, r, x);
+  for (int k = 0; k < 3; k++) v[k] += sign * (b->V[k] + x[k]);
+}
+
 static PetscReal NormalVelocity(Rigid rigid, const Contact *t)
 {
-  PetscReal v[3], w[3], x[3];
-  for (int k = 0; k < 3; k++) v[k] = rigid->body[t->i].V[k] - rigid->body[t->j].V[k];
-  RigidBodyOmega(&rigid->body[t->i], rigid->body[t->i].q, w);
-  Vec3Cross(w, t->ri, x);
-  for (int k = 0; k < 3; k++) v[k] += x[k];
-  RigidBodyOmega(&rigid->body[t->j], rigid->body[t->j].q, w);
-  Vec3Cross(w, t->rj, x);
-  for (int k = 0; k < 3; k++) v[k] -= x[k];
+  PetscReal v[3] = {0., 0., 0.};
+  AddVelocity(&rigid->body[t->i], t->ri, 1., v);
+  if (t->j >= 0) AddVelocity(&rigid->body[t->j], t->rj, -1., v);
   return Vec3Dot(v, t->n);
+}
+
+static void AddForce(RigidBody *b, const PetscReal r[3], const PetscReal n[3], PetscReal f)
+{
+  PetscReal x[3];
+  Vec3Cross(r, n, x);
+  for (int k = 0; k < 3; k++) {
+    b->Fs[k] += f * n[k];
+    b->Ts[k] += f * x[k];
+  }
 }
 
 /* Fs, Ts of all bodies from their present placement and velocities, for a kick of length `kick` (s). */
@@ -449,7 +343,7 @@ PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(RIGID_Contact, 0, 0, 0, 0));
-  PetscCall(FindPairs(rigid, c));
+  PetscCall(RigidFindPairs(rigid, c));
   PetscCall(FindContacts(rigid, c));
   for (PetscInt i = 0; i < rigid->n; i++) {
     c->G[i] = 0.;
@@ -458,22 +352,16 @@ PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick)
   for (PetscInt k = 0; k < c->n; k++) {
     const Contact *t = &c->contact[k];
     c->G[t->i] += t->gamma * InverseMass(&rigid->body[t->i], t->n, t->ri);
-    c->G[t->j] += t->gamma * InverseMass(&rigid->body[t->j], t->n, t->rj);
+    if (t->j >= 0) c->G[t->j] += t->gamma * InverseMass(&rigid->body[t->j], t->n, t->rj);
   }
   for (PetscInt k = 0; k < c->n; k++) {
     const Contact *t = &c->contact[k];
-    RigidBody *bi = &rigid->body[t->i], *bj = &rigid->body[t->j];
-    const PetscReal v = NormalVelocity(rigid, t), w = InverseMass(bi, t->n, t->ri) + InverseMass(bj, t->n, t->rj);
-    PetscReal f = -t->gamma * v / (1. + kick * (c->G[t->i] + c->G[t->j])), x[3];
+    RigidBody *bi = &rigid->body[t->i], *bj = t->j >= 0 ? &rigid->body[t->j] : NULL;
+    const PetscReal v = NormalVelocity(rigid, t), w = InverseMass(bi, t->n, t->ri) + (bj ? InverseMass(bj, t->n, t->rj) : 0.);
+    PetscReal f = -t->gamma * v / (1. + kick * (c->G[t->i] + (bj ? c->G[t->j] : 0.)));
     if (t->share > 0. && w > 0.) f += t->share * ShortRangeContact(&rigid->shortrange, t->R, 1. / w, t->s, v);
-    for (int d = 0; d < 3; d++) {
-      bi->Fs[d] += f * t->n[d];
-      bj->Fs[d] -= f * t->n[d];
-    }
-    Vec3Cross(t->ri, t->n, x);
-    for (int d = 0; d < 3; d++) bi->Ts[d] += f * x[d];
-    Vec3Cross(t->rj, t->n, x);
-    for (int d = 0; d < 3; d++) bj->Ts[d] -= f * x[d];
+    AddForce(bi, t->ri, t->n, f);
+    if (bj) AddForce(bj, t->rj, t->n, -f);
   }
   PetscCall(PetscLogEventEnd(RIGID_Contact, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -511,7 +399,7 @@ PetscErrorCode RigidCheckOverlap(Rigid rigid, PetscReal spacing)
   PetscFunctionBegin;
   PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
   PetscCall(ContactCreate(rigid, 0., spacing, &c));
-  PetscCall(FindPairs(rigid, c));
+  PetscCall(RigidFindPairs(rigid, c));
   for (PetscInt k = 0; k < c->npairs; k++) {
     const PetscInt i = c->pair[k].i, j = c->pair[k].j;
     PetscReal depth;
@@ -520,6 +408,17 @@ PetscErrorCode RigidCheckOverlap(Rigid rigid, PetscReal spacing)
                "Rigid bodies %" PetscInt_FMT " (%s) and %" PetscInt_FMT " (%s) overlap by %g m", i,
                RigidShapeName(rigid->body[i].spec.shape), j, RigidShapeName(rigid->body[j].spec.shape), (double)depth);
   }
+  for (PetscInt i = 0; i < rigid->n; i++)
+    for (PetscInt k = 0; k < rigid->nwalls; k++) {
+      PetscReal depth = 0.;
+      c->n = 0;
+      PetscCall(AnyWall(rigid, c, i, &rigid->wall[k]));
+      for (PetscInt m = 0; m < c->n; m++) depth = PetscMax(depth, -c->contact[m].s);
+      PetscCheck(depth <= 1.e-9 * c->radius[i], rigid->comm, PETSC_ERR_ARG_INCOMP,
+                 "Rigid body %" PetscInt_FMT " (%s) overlaps the wall of normal (%g, %g, %g) by %g m", i,
+                 RigidShapeName(rigid->body[i].spec.shape), (double)rigid->wall[k].n[0], (double)rigid->wall[k].n[1],
+                 (double)rigid->wall[k].n[2], (double)depth);
+    }
   PetscCall(RigidContactDestroy(&c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -550,5 +449,80 @@ PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3])
                "RigidSetPeriod(): component %d = %g m; must be > 0, or 0 for none", k, (double)period[k]);
     rigid->period[k] = period[k];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidAddWall(Rigid rigid, const PetscReal x[3], const PetscReal normal[3])
+{
+  const PetscReal norm = Vec3Norm(normal);
+
+  PetscFunctionBegin;
+  PetscCheck(rigid->nwalls < 6, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE, "RigidAddWall(): there are 6 walls already");
+  PetscCheck(norm > 0. && !PetscIsInfOrNanReal(norm + x[0] + x[1] + x[2]), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "RigidAddWall(): the normal (%g, %g, %g) must be finite and longer than 0", (double)normal[0], (double)normal[1],
+             (double)normal[2]);
+  for (int k = 0; k < 3; k++) {
+    rigid->wall[rigid->nwalls].x[k] = x[k];
+    rigid->wall[rigid->nwalls].n[k] = normal[k] / norm;
+  }
+  rigid->nwalls++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetShortRange(Rigid rigid, ShortRange *p, PetscReal *spacing, PetscReal period[3])
+{
+  PetscFunctionBegin;
+  if (p) *p = rigid->shortrange;
+  if (spacing) *spacing = rigid->spacing;
+  if (period) PetscCall(PetscArraycpy(period, rigid->period, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckBody(Rigid rigid, PetscInt body)
+{
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup && body >= 0 && body < rigid->n, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT ": there are %" PetscInt_FMT " bodies set up", body, rigid->setup ? rigid->n : 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetGap(Rigid rigid, PetscInt body, const PetscReal x[3], PetscReal *distance, PetscReal normal[3],
+                           PetscReal velocity[3])
+{
+  const RigidBody *b;
+  PetscReal r[3], y[3];
+
+  PetscFunctionBegin;
+  PetscCall(CheckBody(rigid, body));
+  b = &rigid->body[body];
+  for (int k = 0; k < 3; k++) {
+    r[k] = RigidNearestImage(x[k] - b->X[k], rigid->period[k]);
+    y[k] = b->X[k] + r[k];
+  }
+  *distance = GapTo(rigid, body, b->X, y, normal);
+  if (velocity) {
+    for (int k = 0; k < 3; k++) velocity[k] = 0.;
+    AddVelocity(b, r, 1., velocity);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetRadius(Rigid rigid, PetscInt body, PetscReal *radius, PetscBool *round)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckBody(rigid, body));
+  if (radius) *radius = BoundingRadius(&rigid->body[body].spec, rigid->dim);
+  if (round) *round = IsRound(&rigid->body[body].spec, rigid->dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetMobility(Rigid rigid, PetscInt body, const PetscReal x[3], const PetscReal n[3], PetscReal *mobility)
+{
+  PetscReal r[3];
+
+  PetscFunctionBegin;
+  PetscCall(CheckBody(rigid, body));
+  for (int k = 0; k < 3; k++) r[k] = RigidNearestImage(x[k] - rigid->body[body].X[k], rigid->period[k]);
+  *mobility = InverseMass(&rigid->body[body], n, r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,6 +45,11 @@ typedef struct {
 typedef struct _p_RigidContact *RigidContact; /* rigidcontact.c */
 typedef struct _p_RigidSystem *RigidSystem;   /* rigidconstraint.c */
 
+/* Half space that bodies keep out of: a point of its face, m, and the unit normal out of it. */
+typedef struct {
+  PetscReal x[3], n[3];
+} RigidWall;
+
 struct _p_Rigid {
   MPI_Comm comm;
   char *prefix;
@@ -60,6 +65,8 @@ struct _p_Rigid {
   RigidSystem system; /* NULL without joints */
   ShortRange shortrange;
   PetscReal spacing, period[3];
+  PetscInt nwalls;
+  RigidWall wall[6];
   RigidContact contact; /* NULL without short-range forces */
   PetscBool setup, advanced;
 };

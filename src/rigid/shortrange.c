@@ -28,6 +28,28 @@ PetscErrorCode ShortRangeCheck(MPI_Comm comm, const ShortRange *p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ShortRangeSetFromOptions(MPI_Comm comm, const char prefix[], ShortRange *p, PetscReal *spacing)
+{
+  PetscFunctionBegin;
+  PetscOptionsBegin(comm, prefix, "Short-range forces", "Rigid");
+  PetscCall(PetscOptionsReal("-rigid_lubrication_viscosity", "Viscosity for lubrication between bodies, Pa s (0: none)",
+                             "RigidSetShortRange", p->viscosity, &p->viscosity, NULL));
+  PetscCall(PetscOptionsReal("-rigid_lubrication_cutoff", "Gap Dc beyond which lubrication is left to the fluid, m",
+                             "RigidSetShortRange", p->cutoff, &p->cutoff, NULL));
+  PetscCall(PetscOptionsBool("-rigid_lubrication_kink", "Factor 1/s - 1/Dc as printed in Eqs. 31, 32 (default: smooth at Dc)",
+                             "RigidSetShortRange", p->kink, &p->kink, NULL));
+  PetscCall(PetscOptionsReal("-rigid_roughness", "Gap at which surfaces touch and lubrication is capped, m", "RigidSetShortRange",
+                             p->roughness, &p->roughness, NULL));
+  PetscCall(PetscOptionsReal("-rigid_contact_modulus", "Reduced Young's modulus of Hertz contact, Pa (0: no contact)",
+                             "RigidSetShortRange", p->modulus, &p->modulus, NULL));
+  PetscCall(PetscOptionsReal("-rigid_contact_restitution", "Coefficient of restitution of contact", "RigidSetShortRange",
+                             p->restitution, &p->restitution, NULL));
+  PetscCall(PetscOptionsReal("-rigid_shortrange_spacing", "Distance of surface markers of bodies that are no spheres, m",
+                             "RigidSetShortRangeSpacing", *spacing, spacing, NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* 1/m: the factor of Eqs. 31 and 32. */
 static PetscReal GapFactor(const ShortRange *p, PetscReal s)
 {

@@ -31,6 +31,9 @@ typedef struct {
 
 /* No lubrication, no contact. p: to be filled. */
 FROND_EXTERN PetscErrorCode ShortRangeInit(ShortRange *p);
+/* Read -rigid_lubrication_..., -rigid_roughness, -rigid_contact_... and -rigid_shortrange_spacing, which rigid bodies and beams
+   share. comm: of the options. prefix: of the options, or NULL. p: parameters to change. spacing: of surface markers, m. */
+FROND_EXTERN PetscErrorCode ShortRangeSetFromOptions(MPI_Comm comm, const char prefix[], ShortRange *p, PetscReal *spacing);
 /* Refuse parameters out of range, naming the one. comm: communicator of the errors. p: parameters. */
 FROND_EXTERN PetscErrorCode ShortRangeCheck(MPI_Comm comm, const ShortRange *p);
 /*
