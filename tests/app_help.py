@@ -21,7 +21,7 @@ for args in (("-help",), ("help",), ("--help",), ()):
 # With a scene, the help shows the scene's values and its names.
 frond.write("small.yaml", apptest.SCENE)
 out = frond.runs("run", "small.yaml", "-help")
-check(re.search(r"-beam_rod_young <.*1e\+06", out), "the scene's value of beam_rod_young is shown")
+check(re.search(r"-beam_rod_young:? <.*1e\+06", out), "the scene's value of beam_rod_young is shown")
 check(not os.path.exists(frond.path("out_small")), "-help runs nothing")
 
 # Every option that the command's own sources read is in -help.

@@ -18,6 +18,14 @@ echo "== installed command"
 if readelf -d "$folder/prefix/bin/frond" | grep -E 'R(UN)?PATH' | grep -q "$build"; then fail "the installed command looks into the build folder"; fi
 readelf -d "$folder"/prefix/lib*/libfrond.so "$folder"/prefix/lib*/*/libfrond.so 2>/dev/null | grep -q 'SONAME.*libfrond\.so\.[0-9]' || fail "libfrond.so has no versioned soname"
 
+echo "== symbols"
+library=$(find "$folder/prefix" -name libfrond.so)
+strange=$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep -vE '^(Sph|Ancf|Rigid|Couple|Frond|ShortRange|PCBlockTri|MatBlockTri|PetscDLLibraryRegister|_edata$|_end$|__bss_start$)' || true)
+[ -z "$strange" ] || fail "symbols visible that are not Frond's:" $strange
+# The library ends no program and prints nothing by itself: it goes through PETSc's viewers, which the caller gives it.
+called=$(nm -D --undefined-only "$library" | awk '{ print $2 }' | grep -E '^(_?exit|abort|quick_exit|v?printf|__printf_chk|puts|putchar|fputs|fwrite)(@|$)' || true)
+[ -z "$called" ] || fail "the library calls" $called
+
 echo "== find_package(Frond)"
 cp -r "$source/tests/outside" "$folder/project"
 cmake -S "$folder/project" -B "$folder/project/build" -DCMAKE_PREFIX_PATH="$folder/prefix" >"$folder/cmake.log"
@@ -31,7 +39,7 @@ PKG_CONFIG_PATH="$pc${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}"
 export PKG_CONFIG_PATH
 version=$(pkg-config --modversion frond)
 cc -Wall "$folder/project/outside.c" $(pkg-config --cflags --libs frond) -lm -o "$folder/outside_pc"
-LD_LIBRARY_PATH=$(pkg-config --variable=libdir frond) "$folder/outside_pc"
+LD_LIBRARY_PATH=$(pkg-config --variable=libdir frond)${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} "$folder/outside_pc"
 
 echo "== every header alone"
 for header in "$folder"/prefix/include/frond/*.h; do
