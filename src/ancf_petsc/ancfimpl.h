@@ -4,6 +4,11 @@
 
 #include "ancfelement.h"
 
+/* PETSc renamed it in 3.26. */
+#if PETSC_VERSION_LT(3, 26, 0)
+  #define SNESLINESEARCHNONE SNESLINESEARCHBASIC
+#endif
+
 /* How the equations of motion are handed to TS. */
 typedef enum {
   ANCF_FORM_SECOND,    /* F(t,e,edot,eddot) = 0 */

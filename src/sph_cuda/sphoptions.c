@@ -1,6 +1,13 @@
 /* sphoptions.c - every parameter of the fluid: setter, option of the same name, and what SphView prints. */
 #include "sphimpl.h"
 
+/* A pointer by itself since PETSc 3.23. */
+#if PETSC_VERSION_LT(3, 23, 0)
+typedef PetscOptionItems *SphOptionItems;
+#else
+typedef PetscOptionItems SphOptionItems;
+#endif
+
 const char *const SphKernelTypes[] = {"cubic", "wendland", "SphKernelType", "SPH_KERNEL_", NULL};
 const char *const SphPrecisions[] = {"single", "double", "SphPrecision", "SPH_PRECISION_", NULL};
 const char *const SphWallTypes[] = {"bce", "adami", "SphWallType", "SPH_WALL_", NULL};
@@ -330,7 +337,7 @@ PetscErrorCode SphSetCheckEvery(Sph sph, PetscInt every)
 }
 
 /* Options that carry a length, a material or a choice; set is true when the option was given. */
-static PetscErrorCode OptionsGeometry(Sph sph, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode OptionsGeometry(Sph sph, SphOptionItems PetscOptionsObject)
 {
   SphParams *p = &sph->par;
   PetscInt n;
@@ -365,7 +372,7 @@ static PetscErrorCode OptionsGeometry(Sph sph, PetscOptionItems *PetscOptionsObj
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode OptionsMethod(Sph sph, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode OptionsMethod(Sph sph, SphOptionItems PetscOptionsObject)
 {
   SphParams *p = &sph->par;
   PetscInt n = 3;
@@ -418,7 +425,7 @@ static PetscErrorCode OptionsMethod(Sph sph, PetscOptionItems *PetscOptionsObjec
 }
 
 /* Choices between forms of the viscous term, the density equation and the time stepping. */
-static PetscErrorCode OptionsForms(Sph sph, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode OptionsForms(Sph sph, SphOptionItems PetscOptionsObject)
 {
   SphParams *p = &sph->par;
   PetscEnum e;
