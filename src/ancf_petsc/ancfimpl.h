@@ -4,9 +4,11 @@
 
 #include "ancfelement.h"
 
-/* PETSc renamed it in 3.26. */
+/* No line search; PETSc renamed it in 3.26. */
 #if PETSC_VERSION_LT(3, 26, 0)
-  #define SNESLINESEARCHNONE SNESLINESEARCHBASIC
+  #define ANCF_FULL_STEP SNESLINESEARCHBASIC
+#else
+  #define ANCF_FULL_STEP SNESLINESEARCHNONE
 #endif
 
 /* How the equations of motion are handed to TS. */

@@ -47,7 +47,7 @@ static PetscErrorCode StaticCreate(Ancf ancf, SNES *snes, Vec *X, Mat *J)
   PetscCall(SNESSetFunction(*snes, NULL, StaticFunction, ancf));
   /* Full steps: bending first stretches the chord, so that the residual rises before it falls. */
   PetscCall(SNESGetLineSearch(*snes, &search));
-  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHNONE));
+  PetscCall(SNESLineSearchSetType(search, ANCF_FULL_STEP));
   PetscCall(
       SNESSetTolerances(*snes, 4 * PETSC_MACHINE_EPSILON * EA * PetscSqrtReal((PetscReal)ancf->nnodes), 1e-10, 1e-13, 40, 10000));
   PetscCall(SNESSetDivergenceTolerance(*snes, -1));

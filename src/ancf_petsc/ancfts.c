@@ -456,7 +456,7 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(SNESSetForceIteration(snes, PETSC_TRUE)); /* the floor of AncfSetNewtonFloor() must not swallow small loads */
   /* Full steps: bending first stretches the chord, so that the residual rises before it falls; a step that fails is reduced. */
   PetscCall(SNESGetLineSearch(snes, &search));
-  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHNONE));
+  PetscCall(SNESLineSearchSetType(search, ANCF_FULL_STEP));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
