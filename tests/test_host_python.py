@@ -2,6 +2,7 @@
 """test_host_python.py EXAMPLES: the Python module against what is known of scenes, and the tutorial as it stands. 77: no numpy."""
 import ctypes
 import os
+import re
 import runpy
 import sys
 
@@ -21,6 +22,23 @@ def check(ok, what):
     if not ok:
         failed += 1
         print("FAILED: " + what)
+
+
+def layout(header, name):
+    """Members of a struct in a public header, in order: name and number of elements."""
+    with open(os.path.join(examples, os.pardir, "src", header), encoding="utf-8") as f:
+        text = re.sub(r"/\*.*?\*/", "", f.read(), flags=re.S)
+    inner = re.search(r"typedef struct \{([^{}]*)\} %s;" % name, text).group(1)
+    for declaration in inner.split(";")[:-1]:
+        for member in declaration.split(None, 1)[1].split(","):
+            word, size = re.fullmatch(r"\s*\**(\w+)(?:\[(\d+)\])?\s*", member).groups()
+            yield word, int(size or 1)
+
+
+# The structs of the module are those of the headers.
+for header, name, mirror in (("ancf_petsc/ancf.h", "AncfBeamSpec", frond._BeamSpec), ("sph_cuda/sph.h", "SphFields", frond._Fields), ("couple/couple.h", "CoupleAudit", frond._Audit)):
+    ours = [(n, getattr(kind, "_length_", 1)) for n, kind in mirror._fields_]
+    check(ours == list(layout(header, name)), "%s: the module has %s, the header %s" % (name, ours, list(layout(header, name))))
 
 
 def coarse():
