@@ -54,6 +54,8 @@ history_every: 0
 progress_every: 0
 """
 frond.write("all.yaml", SCENE)
+frond.write("dry.yaml", SCENE[: SCENE.index("fluid_velocity")].replace("domain_lo: [0, 0, 0]\ndomain_hi: [0.6, 0.36, 0.4]\ndomain_periodic: [x, y]\nwalls: [zmin, zmax]\n", "")
+            + "fluid: false\ntime_step: 1e-4\noutput_every: 1000\nhistory_every: 0\nprogress_every: 0\n")
 
 
 def arrays(path):
@@ -112,11 +114,10 @@ def number(path):
     return int(os.path.basename(path)[11:20])
 
 
-def cut(name, args, steps=200, threads="1", scene="all.yaml"):
+def cut(name, args, steps=200, threads="1", scene="all.yaml", dt=1e-4):
     """`steps` steps in one go without a checkpoint, against half of them, a checkpoint, and the rest."""
-    dt = 1e-4
     args = [*args, "-time_end", repr(steps * dt), "-output_every", repr(steps * dt / 10)]
-    if "false" not in args and "variable" not in args:
+    if scene != "dry.yaml" and "variable" not in args:
         args += ["-sph_dt", repr(dt)]
     args = [a for a in args if a != "variable"]
     frond.runs("run", scene, *args, "-output_dir", name + "_whole")
@@ -152,8 +153,88 @@ def variants():
     for kind in ("beuler", "cn", "euler", "basicsymplectic"):
         extra = ["-ancf_ts_basicsymplectic_type", "2"] if kind == "basicsymplectic" else []
         cut(kind, ["-ancf_ts_type", kind, *extra, "-ancf_substeps", "4"], steps=40)
+    cut("dry", [], scene="dry.yaml", threads="2")
+    # Newton's method fails with 3 iterations: steps are halved
+    cut("dry_halved", ["-ancf_snes_max_it", "3", "-beam_rod_end0", "pin", "-beam_young", "2e7", "-time_step", "5e-3"], steps=40, scene="dry.yaml", dt=5e-3)
+
+
+def others():
+    """Integrators with a memory that PETSc keeps begin anew at a checkpoint: the same bits with the same checkpoints."""
+    for kind, args in (("rk", ["-ancf_ts_type", "rk"]), ("bdf", ["-ancf_ts_type", "bdf"]), ("adaptive", ["-ancf_ts_adapt_type", "basic"])):
+        common = [*args, "-sph_dt", "1e-4", "-time_end", "4e-3", "-output_every", "1e-3", "-checkpoint_every", "2e-3", "-ancf_substeps", "4"]
+        frond.runs("run", "all.yaml", *common, "-output_dir", kind)
+        shutil.copytree(frond.path(kind), frond.path(kind + "_again"))
+        frond.runs("run", "all.yaml", *common, "-output_dir", kind + "_again", "-restart", os.path.relpath(checkpoints(kind + "_again")[0], frond.folder))
+        same_run(kind, kind + "_again", kind)
+
+
+def run_of_four():
+    frond.runs("run", "all.yaml", "-sph_dt", "1e-4", "-time_end", "4e-3", "-output_every", "1e-3", "-checkpoint_every", "1e-3", "-output_dir", "four",
+               "-checkpoint_keep", "3")
+    check([number(f) for f in checkpoints("four")] == [20, 30, 40], "the last 3 checkpoints are kept: %s" % checkpoints("four"))
+    check(not glob.glob(frond.path("four", "*.part")), "no unfinished file is left")
+
+
+GO_ON = ["run", "all.yaml", "-sph_dt", "1e-4", "-output_every", "1e-3", "-time_end", "5e-3", "-output_dir", "never", "-restart"]
+
+
+def damaged():
+    """Every way in which a file can be wrong is found before anything is read from it; the good one beside it is named."""
+    last = frond.path("four", "checkpoint_000000040.h5")
+    good = open(last, "rb").read()
+
+    def refused(data, words, what):
+        with open(last, "wb") as f:
+            f.write(data)
+        for target in ("four", "four/checkpoint_000000040.h5"):
+            frond.refuses([*GO_ON, target], ["checkpoint_000000040.h5", *words, "last good.*checkpoint_000000030.h5"], code=3)
+        check(not os.path.exists(frond.path("never")), what + ": nothing is made")
+
+    for n in (0, 100, 512, 513, len(good) // 2, len(good) - 1):
+        refused(good[:n], ["damaged" if n >= 20 else "no checkpoint"], "cut to %d bytes" % n)
+    refused(good + b"x", ["damaged"], "one byte more")
+    rng = np.random.default_rng(7)
+    bits = [*rng.integers(0, 8 * len(good), 10), 8 * 30 + 1, 8 * 511, 8 * 512, 8 * len(good) - 1]
+    for bit in bits:
+        bad = bytearray(good)
+        bad[bit // 8] ^= 1 << (bit % 8)
+        refused(bytes(bad), ["damaged|no checkpoint|newer"], "bit %d" % bit)
+    refused(good.replace(b"frond-checkpoint 1", b"frond-checkpoint 2", 1), ["format 2", "newer", "up to 1"], "newer")
+    refused(open(frond.path("four", "frame_00000.h5"), "rb").read(), ["no checkpoint"], "a frame")
+    refused(b"%PDF-1.4 something else" * 100, ["no checkpoint"], "another program's file")
+    with open(last, "wb") as f:
+        f.write(good)
+    frond.refuses([*GO_ON, "absent.h5"], ["absent.h5", "No such file"], code=3)
+    os.makedirs(frond.path("empty"), exist_ok=True)
+    frond.refuses([*GO_ON, "empty"], ["no checkpoint in 'empty'"], code=3)
+    print("%d damaged files refused" % (2 * (len(bits) + 10)), flush=True)
+
+
+def other_scene():
+    """A restart with other options is refused with the differences, and done when asked for; what may differ may."""
+    for args, words in ((["-sph_viscosity", "2"], ["was sph_viscosity 1, is sph_viscosity 2", "restart_changed"]),
+                        (["-beam_rod_damping", "3"], ["unknown option"]),
+                        (["-sph_xsph", "0.2"], ["sph_xsph 0.2 is new"]),
+                        (["-sph_dp", "0.05"], ["was sph_dp 0.04"])):
+        frond.refuses([*GO_ON, "four", *args], words)
+    frond.refuses([*GO_ON, "four", "-sph_dp", "0.05", "-restart_changed"], ["of another scene|saved fluid has"], code=None)
+    frond.refuses([*GO_ON[:7], "4e-3", *GO_ON[8:], "four"], ["not before time_end"])
+    for args, words in ((["-checkpoint_every", "-2"], ["checkpoint_every = -2", ">= 0"]), (["-checkpoint_keep", "0"], ["checkpoint_keep = 0", "at least 1"])):
+        frond.refuses(["run", "all.yaml", "-time_end", "1e-3", *args], words)
+    out = frond.runs(*GO_ON[:8], "-output_dir", "more", "-restart", "four", "-sph_viscosity", "2", "-restart_changed")
+    check("sph_viscosity" in out and "begins here" in out, "changed options and the missing history are said: " + out)
+    rows = open(frond.path("more", "history.csv")).read().splitlines()
+    check(rows[1].split(",")[1] == "41" and rows[-1].split(",")[1] == "50", "the new folder's history goes from step 41 to 50")
+    check([os.path.basename(f) for f in frames("more")] == ["frame_00005.h5"], "the frames go on in number: %s" % frames("more"))
+    with open(frond.path("more", "history.csv"), "w") as f:
+        f.write(rows[0] + "\n" + rows[1] + "\n")
+    frond.refuses([*GO_ON[:8], "-output_dir", "more", "-restart", "four"], ["history.csv", "not that of the checkpoint"], code=3)
 
 
 if __name__ == "__main__":
     variants()
+    others()
+    run_of_four()
+    damaged()
+    other_scene()
     apptest.report()
