@@ -127,11 +127,8 @@ static void next_checkpoint(Run *run)
 static PetscErrorCode restart(Run *run)
 {
   const AppScene *s = &run->app->scene;
-  CheckpointInfo info;
 
   PetscFunctionBegin;
-  PetscCall(AppRestartRead(run->app, &run->state, &info));
-  PetscCall(PetscFree(info.options));
   PetscCall(move_run(run, AppStateBegin(&run->state, FROND_STATE_LOAD)));
   if (s->outevery > 0 && run->nextframe != PetscMin((PetscReal)run->frame * s->outevery, s->tend)) {
     run->frame = (PetscInt)PetscFloorReal(run->app->t / s->outevery);
@@ -145,9 +142,15 @@ static PetscErrorCode restart(Run *run)
 
 static PetscErrorCode run_start(Run *run)
 {
+  CheckpointInfo info;
+
   PetscFunctionBegin;
   run->exact = PETSC_TRUE;
   if (run->app->ancf) PetscCall(AncfGetPackExact(run->app->ancf, &run->exact));
+  if (run->app->scene.restart[0]) { /* before any file is touched */
+    PetscCall(AppRestartRead(run->app, &run->state, &info));
+    PetscCall(PetscFree(info.options));
+  }
   PetscCall(AppOutputCreate(run->app, &run->output));
   PetscCall(AppHistoryCreate(run->app, &run->history));
   if (run->app->scene.restart[0]) {
