@@ -24,6 +24,7 @@ TITLES = [
     ("Coupling options", "Coupling"),
     ("Slender beams (ANCF)", "Beam solver"),
     ("Rigid bodies", "Rigid body solver"),
+    ("Short-range forces", "Short-range forces of rigid bodies"),
 ]
 LINE = re.compile(r"^ {2,4}-(\w+):?\s*(?:<(.*?)>:?)?\s*(.*?)\s*(?:\((\w*)\))?$")
 
