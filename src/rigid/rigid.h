@@ -299,24 +299,6 @@ FROND_EXTERN PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3
   point of its face, m. normal: 3, into the free side, of any length > 0.
 */
 FROND_EXTERN PetscErrorCode RigidAddWall(Rigid rigid, const PetscReal x[3], const PetscReal normal[3]);
-/* Each output may be NULL. p: the short-range forces in use. spacing: of surface markers, m. period: 3, m. */
-FROND_EXTERN PetscErrorCode RigidGetShortRange(Rigid rigid, ShortRange *p, PetscReal *spacing, PetscReal period[3]);
-/*
-  From a point to the surface of a body as it lies now. body: number. x: 3, the point, m; its nearest image is taken. distance:
-  signed, negative inside, m. normal: 3, unit normal of the surface there, or NULL. velocity: 3, that a point of the body would
-  have there, m/s, or NULL.
-*/
-FROND_EXTERN PetscErrorCode RigidGetGap(Rigid rigid, PetscInt body, const PetscReal x[3], PetscReal *distance,
-                                        PetscReal normal[3], PetscReal velocity[3]);
-/* Each output may be NULL. body: number. radius: of the sphere about the centre of mass that holds the body, m. round: whether
-   the body is a sphere (in 2D a disc). */
-FROND_EXTERN PetscErrorCode RigidGetRadius(Rigid rigid, PetscInt body, PetscReal *radius, PetscBool *round);
-/*
-  By how much a unit force changes the velocity of its point of action along itself in unit time. body: number. x: 3, that
-  point, m. n: 3, direction of the force, space frame. mobility: 1/kg; 0 for bodies that are not free.
-*/
-FROND_EXTERN PetscErrorCode RigidGetMobility(Rigid rigid, PetscInt body, const PetscReal x[3], const PetscReal n[3],
-                                             PetscReal *mobility);
 /*
   Refuse bodies that overlap, naming both, and free bodies that overlap a wall; joined bodies, and pairs of which none is free,
   are left alone. spacing: distance of surface markers, m, as RigidSetShortRangeSpacing().
