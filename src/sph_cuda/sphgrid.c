@@ -63,9 +63,10 @@ PetscErrorCode SphSample(Sph sph, PetscInt n, const PetscReal *x, PetscReal *v, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Midpoints of the cells, at most dp long, of a parallelogram with corner c and edges a, b (in 2D: of the line c, c + a). */
-static PetscErrorCode PlanePoints(Sph sph, const PetscReal c[3], const PetscReal a[3], const PetscReal b[3], PetscInt *n,
-                                  PetscReal **x)
+/* Midpoints of the cells, at most dp long, of a parallelogram with corner c, edges a, b and this area (in 2D: of the line c, c +
+ * a, its length). */
+static PetscErrorCode PlanePoints(Sph sph, const PetscReal c[3], const PetscReal a[3], const PetscReal b[3], PetscReal area,
+                                  PetscInt *n, PetscReal **x)
 {
   const PetscReal *edge[2] = {a, b};
   PetscInt m[2] = {1, 1};
@@ -78,6 +79,7 @@ static PetscErrorCode PlanePoints(Sph sph, const PetscReal c[3], const PetscReal
                "plane: its edge %d is %g m long; must be > 0 and below 10^6 sph_dp", e + 1, (double)l);
     m[e] = (PetscInt)cells;
   }
+  PetscCheck(area > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "plane: its edges are parallel; must span an area");
   PetscCheck((double)m[0] * (double)m[1] < 1e8, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "plane: more than 10^8 points");
   *n = m[0] * m[1];
   PetscCall(PetscMalloc1(3 * (size_t)*n, x));
@@ -99,18 +101,18 @@ PetscErrorCode SphGetPlane(Sph sph, const PetscReal corner[3], const PetscReal e
                            SphPlane *plane)
 {
   const int dim = (int)sph->par.dim;
-  PetscReal N[3] = {edge1[1], -edge1[0], 0.0}, *x, *v, *p, *rho, *fraction, dA;
+  PetscReal N[3] = {edge1[1], -edge1[0], 0.0}, *x, *v, *p, *rho, *fraction, area, dA;
   PetscInt n;
   SphPlane t = {0};
 
   PetscFunctionBegin;
   if (dim == 3)
     for (int k = 0; k < 3; k++) N[k] = edge1[(k + 1) % 3] * edge2[(k + 2) % 3] - edge1[(k + 2) % 3] * edge2[(k + 1) % 3];
-  PetscCall(PlanePoints(sph, corner, edge1, edge2, &n, &x));
+  area = PetscSqrtReal(N[0] * N[0] + N[1] * N[1] + N[2] * N[2]);
+  PetscCall(PlanePoints(sph, corner, edge1, edge2, area, &n, &x));
   PetscCall(PetscMalloc4(3 * (size_t)n, &v, n, &p, n, &rho, n, &fraction));
   PetscCall(SphInterpolate(sph, SPH_INTERPOLATE_LINEAR, n, x, &(SphPoints){v, p, rho, fraction}));
-  dA = PetscSqrtReal(N[0] * N[0] + N[1] * N[1] + N[2] * N[2]) / (PetscReal)n;
-  PetscCheck(dA > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "plane: its edges are parallel; must span an area");
+  dA = area / (PetscReal)n;
   for (PetscInt j = 0; j < n; j++) {
     PetscReal un = 0.0;
     if (!(fraction[j] >= 0.5)) continue;

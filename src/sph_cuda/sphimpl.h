@@ -11,9 +11,6 @@
 #include "sphcell.h"
 #include <string.h>
 
-/* Markers of the buffer of opening k (sphopen.c) have the group SPH_GROUP_OPEN - k. */
-#define SPH_GROUP_OPEN (-3)
-
 /* Steps between the Euler steps of the Verlet integrator, sphstep.h. */
 #define SPH_VERLET_EVERY 40
 

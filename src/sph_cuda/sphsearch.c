@@ -15,7 +15,7 @@ static int Wanted(Sph sph, PetscInt i, const PetscReal lo[3], const PetscReal hi
 {
   const SphParams *p = &sph->par;
 
-  if (!SphIsFluid(sph->group[i])) return 0;
+  if (sph->group[i] != -1) return 0;
   for (int k = 0; k < p->dim && lo; k++) {
     const double x = sph->st.x[k][i];
     if (!p->periodic[k] && (x < lo[k] - 2.0 * p->h || x > hi[k] + 2.0 * p->h)) return 0;

@@ -1,6 +1,6 @@
 /*
-  sphsearch.h - private: fluid markers sorted into cells of edge >= 2h on the host, for sums at arbitrary points (sphgrid.c,
-  sphopen.c). The markers are copied; the state's own order is left alone, so that every backend can use it after a pull.
+  sphsearch.h - private: fluid markers sorted into cells of edge >= 2h on the host, for sums at arbitrary points (sphgrid.c).
+  The markers are copied; the state's own order is left alone, so that every backend can use it after a pull.
 */
 #ifndef SPHSEARCH_H
 #define SPHSEARCH_H
@@ -36,11 +36,5 @@ extern void SphSearchSum(const Sph sph, const SphSearch *search, const PetscReal
   weighted with the kernel (Shepard, ACM 23 (1968)). Returns the order used, or -1 with no marker near.
 */
 extern int SphPointValues(const SphPointSums *sums, int dim, int order, double value[5]);
-
-/* Whether a marker belongs to the fluid: free, or of a buffer of an opening (sphopen.c). */
-static inline int SphIsFluid(int group)
-{
-  return group == -1 || group <= SPH_GROUP_OPEN;
-}
 
 #endif
