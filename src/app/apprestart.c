@@ -60,20 +60,22 @@ static char *next_option(char **at)
 /* Every option that says what is computed, one a line in the order of the alphabet; free it with PetscFree(). */
 PetscErrorCode AppOptionsText(char **text)
 {
-  char *all, *at, *option, *lines[4096], name[PETSC_MAX_PATH_LEN], one[64];
-  size_t len = 1;
+  char *all, *at, *option, **lines, name[PETSC_MAX_PATH_LEN], one[64];
+  size_t len = 1, most = 0;
   int n = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (at = all; *at; at++) most += *at == '-'; /* no fewer than options */
+  PetscCall(PetscMalloc1(most, &lines));
   at = all;
-  while (n < 4096 && (option = next_option(&at))) {
+  while ((option = next_option(&at))) {
     snprintf(name, sizeof(name), "%.*s", (int)strcspn(option, " "), option);
     if (is_free(name)) continue;
     lines[n++] = option;
     len += strlen(option) + sizeof(one);
   }
-  qsort(lines, (size_t)n, sizeof(lines[0]), by_text);
+  if (n) qsort(lines, (size_t)n, sizeof(lines[0]), by_text);
   PetscCall(PetscCalloc1(len, text));
   for (int i = 0; i < n; i++) {
     const char *value = strchr(lines[i], ' ');
@@ -82,6 +84,7 @@ PetscErrorCode AppOptionsText(char **text)
     PetscCall(PetscStrlcat(*text, lines[i], len));
     PetscCall(PetscStrlcat(*text, one, len));
   }
+  PetscCall(PetscFree(lines));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

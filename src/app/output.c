@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#define FRAME_NAME "frame_%lld.h5%n"
+
 #define POINTS_PER_ELEMENT 8
 
 struct _AppOutput {
@@ -73,19 +75,26 @@ PetscErrorCode AppOutputCheck(const char dir[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Number in a name such as frame_00012.h5, which may be that of a file not finished yet (.part); -1 for another name. */
+static long long result_number(const char name[], const char format[], PetscBool *part)
+{
+  long long number;
+  int end = 0;
+
+  if (sscanf(name, format, &number, &end) != 1 || !end) return -1;
+  *part = (PetscBool)(name[end] != 0);
+  return *part && strcmp(name + end, ".part") ? -1 : number;
+}
+
 static PetscBool is_result(const char name[])
 {
   static const char *const fixed[] = {"run.xdmf",   "run.xdmf.part",   "history.csv",
                                       "history.h5", "history.h5.part", "settings.txt"};
-  int number, end = 0;
-  long long step;
+  PetscBool part;
 
   for (size_t i = 0; i < sizeof(fixed) / sizeof(fixed[0]); i++)
     if (!strcmp(name, fixed[i])) return PETSC_TRUE;
-  if (sscanf(name, "frame_%d.h5%n", &number, &end) == 1 && end && (!name[end] || !strcmp(name + end, ".part"))) return PETSC_TRUE;
-  if (sscanf(name, "checkpoint_%lld.h5%n", &step, &end) == 1 && end && (!name[end] || !strcmp(name + end, ".part")))
-    return PETSC_TRUE;
-  return PETSC_FALSE;
+  return (PetscBool)(result_number(name, FRAME_NAME, &part) >= 0 || result_number(name, "checkpoint_%lld.h5%n", &part) >= 0);
 }
 
 /* Refuse to mix with an earlier run, or remove its files (and no others) when told to. */
@@ -334,16 +343,13 @@ static PetscErrorCode cut_frames(AppOutput out)
   char path[2 * PETSC_MAX_PATH_LEN];
   struct dirent *entry;
   DIR *d = opendir(out->dir);
-  int number, end;
 
   PetscFunctionBegin;
   PetscCheck(d, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: cannot list '%s': %s", out->dir, strerror(errno));
   while ((entry = readdir(d))) {
-    end = 0;
-    if (sscanf(entry->d_name, "frame_%d.h5%n", &number, &end) != 1 || !end ||
-        (!entry->d_name[end] && number < out->series.nframes))
-      continue;
-    if (entry->d_name[end] && strcmp(entry->d_name + end, ".part")) continue;
+    PetscBool part;
+    const long long number = result_number(entry->d_name, FRAME_NAME, &part);
+    if (number < 0 || (!part && number < out->series.nframes)) continue;
     snprintf(path, sizeof(path), "%s/%s", out->dir, entry->d_name);
     PetscCheck(!unlink(path), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "output_dir: cannot remove '%s': %s", path, strerror(errno));
   }
