@@ -20,25 +20,51 @@ static inline PetscErrorCode SeedSpec(PetscInt elements, AncfBeamSpec *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* AncfSetFromOptions() and AncfSetUp() with options from two strings of the test's own, the second NULL for none. */
+static inline PetscErrorCode SetUpWith(Ancf ancf, const char first[], const char second[])
+{
+  PetscOptions options;
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsCreate(&options));
+  PetscCall(PetscOptionsInsertString(options, first));
+  if (second) PetscCall(PetscOptionsInsertString(options, second));
+  PetscCall(PetscOptionsPush(options));
+  ierr = AncfSetFromOptions(ancf);
+  if (!ierr) ierr = AncfSetUp(ancf);
+  PetscCall(PetscOptionsPop());
+  PetscCall(PetscOptionsDestroy(&options));
+  PetscFunctionReturn(ierr);
+}
+
 /* One beam, gravity gz along z, options from a string of the test's own. *ancf is set even after an error. */
 static inline PetscErrorCode BeamCreate(const AncfBeamSpec *s, PetscReal gz, const char string[], Ancf *ancf)
 {
   PetscReal g[3] = {0, 0, gz};
-  PetscOptions options;
-  PetscErrorCode ierr;
 
   PetscFunctionBegin;
   PetscCall(AncfCreate(PETSC_COMM_SELF, ancf));
   PetscCall(AncfAddBeam(*ancf, s, NULL));
   PetscCall(AncfSetGravity(*ancf, g));
-  PetscCall(PetscOptionsCreate(&options));
-  PetscCall(PetscOptionsInsertString(options, string));
-  PetscCall(PetscOptionsPush(options));
-  ierr = AncfSetFromOptions(*ancf);
-  if (!ierr) ierr = AncfSetUp(*ancf);
-  PetscCall(PetscOptionsPop());
-  PetscCall(PetscOptionsDestroy(&options));
-  PetscFunctionReturn(ierr);
+  PetscFunctionReturn(SetUpWith(*ancf, string, NULL));
+}
+
+/* Height of the last node of each of n beams, m. */
+static inline PetscErrorCode TipHeights(Ancf ancf, PetscInt n, PetscReal tip[])
+{
+  const PetscReal *e;
+
+  PetscFunctionBegin;
+  PetscCall(AncfGetState(ancf, NULL, &e, NULL, NULL));
+  for (PetscInt b = 0; b < n; b++) {
+    AncfBeamSpec s;
+    PetscInt first;
+
+    PetscCall(AncfGetBeam(ancf, b, &s, &first, NULL));
+    tip[b] = e[6 * (first + s.elements) + 2];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PETSC_UNUSED static char test_message[2048]; /* of the last error caught */

@@ -236,9 +236,8 @@ static PetscErrorCode TestSolvers(void)
 
   PetscFunctionBegin;
   for (int k = 0; k < 5; k++) {
-    const PetscReal g[3] = {0, 1, -9.81}, *e;
+    const PetscReal g[3] = {0, 1, -9.81};
     PetscInt newton;
-    PetscOptions db;
     Ancf a;
 
     PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
@@ -253,25 +252,11 @@ static PetscErrorCode TestSolvers(void)
       PetscCall(AncfAddBeam(a, &s, NULL));
     }
     PetscCall(AncfSetGravity(a, g));
-    PetscCall(PetscOptionsCreate(&db));
-    PetscCall(PetscOptionsInsertString(db, options[k]));
-    PetscCall(PetscOptionsInsertString(db, "-ancf_ts_alpha_radius 1 -ancf_snes_rtol 1e-11 -ancf_snes_stol 1e-13"));
-    PetscCall(PetscOptionsPush(db));
-    PetscCall(AncfSetFromOptions(a));
-    PetscCall(AncfSetUp(a));
-    PetscCall(PetscOptionsPop());
-    PetscCall(PetscOptionsDestroy(&db));
+    PetscCall(SetUpWith(a, options[k], "-ancf_ts_alpha_radius 1 -ancf_snes_rtol 1e-11 -ancf_snes_stol 1e-13"));
     for (int i = 1; i <= 100; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
-    PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
     PetscCall(AncfGetCounts(a, NULL, &newton, NULL));
     printf("%-60s %d Newton iterations\n", options[k], (int)newton);
-    for (PetscInt b = 0; b < 40; b++) {
-      AncfBeamSpec s;
-      PetscInt first;
-
-      PetscCall(AncfGetBeam(a, b, &s, &first, NULL));
-      tips[k][b] = e[6 * (first + s.elements) + 2];
-    }
+    PetscCall(TipHeights(a, 40, tips[k]));
     PetscCall(AncfDestroy(&a));
   }
   for (int k = 1; k < 4; k++)

@@ -494,13 +494,7 @@ static PetscErrorCode TestGroups(void)
       PetscCall(AncfAddBeam(a, &s, NULL));
     }
     PetscCall(AncfSetGravity(a, g));
-    PetscCall(PetscOptionsCreate(&db));
-    PetscCall(PetscOptionsInsertString(db, options[k]));
-    PetscCall(PetscOptionsPush(db));
-    PetscCall(AncfSetFromOptions(a));
-    PetscCall(AncfSetUp(a));
-    PetscCall(PetscOptionsPop());
-    PetscCall(PetscOptionsDestroy(&db));
+    PetscCall(SetUpWith(a, options[k], NULL));
     for (int i = 1; i <= 100; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
     PetscCall(AncfSaveState(a));
     PetscCall(AncfGetLoads(a, &Q));
@@ -514,14 +508,7 @@ static PetscErrorCode TestGroups(void)
       PetscCall(AncfRestoreState(a));
       for (int i = 101; i <= 120; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
     }
-    PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
-    for (PetscInt b = 0; b < 40; b++) {
-      AncfBeamSpec s;
-      PetscInt first;
-
-      PetscCall(AncfGetBeam(a, b, &s, &first, NULL));
-      tips[k][b] = e[6 * (first + s.elements) + 2];
-    }
+    PetscCall(TipHeights(a, 40, tips[k]));
     PetscCall(AncfDestroy(&a));
   }
   for (int k = 1; k < 9; k++)

@@ -255,6 +255,23 @@ static PetscErrorCode TestPlates(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A box .05 m above z = 0, with contact only; s: its spec. */
+static PetscErrorCode DropBox(ShortRange *p, const PetscReal g[3], RigidBodySpec *s, Rigid *r)
+{
+  PetscFunctionBegin;
+  PetscCall(RigidCreate(PETSC_COMM_SELF, r));
+  p->viscosity = 0., p->restitution = .3, p->modulus = 1e7;
+  PetscCall(RigidSetShortRange(*r, p));
+  PetscCall(RigidSetShortRangeSpacing(*r, .1));
+  PetscCall(RigidSetGravity(*r, g));
+  PetscCall(RigidBodySpecInit(s));
+  s->shape = RIGID_BOX;
+  s->size[0] = .3, s->size[1] = .2, s->size[2] = .4;
+  s->position[2] = .25;
+  PetscCall(RigidAddBody(*r, s, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Odd bodies collide off centre: momenta are kept; a joined pair is left alone; a box comes to rest on a floor; images across a
  * period. */
 static PetscErrorCode TestOddBodies(void)
@@ -299,16 +316,7 @@ static PetscErrorCode TestOddBodies(void)
   PetscCall(RigidDestroy(&r));
 
   /* box dropped flat on a floor from .05 m: rests with a gap between 0 and the roughness */
-  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
-  p.viscosity = 0., p.restitution = .3, p.modulus = 1e7;
-  PetscCall(RigidSetShortRange(r, &p));
-  PetscCall(RigidSetShortRangeSpacing(r, .1));
-  PetscCall(RigidSetGravity(r, g));
-  PetscCall(RigidBodySpecInit(&s));
-  s.shape = RIGID_BOX;
-  s.size[0] = .3, s.size[1] = .2, s.size[2] = .4;
-  s.position[2] = .25;
-  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(DropBox(&p, g, &s, &r));
   s.motion = RIGID_FIXED;
   s.size[0] = s.size[1] = 2., s.size[2] = .5;
   s.position[2] = -.25;
@@ -395,16 +403,7 @@ static PetscErrorCode TestWall(void)
   TEST_REL(A[1][2], A[0][2], 1e-6, "sphere at a wall and at a box"); /* the box's normal is by differences */
   TEST(A[0][2] > 1., "no force: %g", A[0][2]);
 
-  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
-  p.viscosity = 0., p.restitution = .3, p.modulus = 1e7;
-  PetscCall(RigidSetShortRange(r, &p));
-  PetscCall(RigidSetShortRangeSpacing(r, .1));
-  PetscCall(RigidSetGravity(r, g));
-  PetscCall(RigidBodySpecInit(&s));
-  s.shape = RIGID_BOX;
-  s.size[0] = .3, s.size[1] = .2, s.size[2] = .4;
-  s.position[2] = .25;
-  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(DropBox(&p, g, &s, &r));
   s.position[0] = 1.; /* hangs with its foot in the wall */
   s.position[2] = .15;
   PetscCall(RigidAddBody(r, &s, NULL));
