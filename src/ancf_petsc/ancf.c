@@ -431,12 +431,13 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   PetscCall(AncfRuleSetUp(&ancf->rule, ancf->strain, ancf->naxial, ancf->nbending));
   AncfSetUpNodes(ancf);
   PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
+  PetscCall(AncfJointSetUp(ancf));
   PetscCall(AncfSetUpBatches(ancf));
   PetscCall(AncfSetUpLaneBeams(ancf));
   PetscCall(AncfSetUpDamping(ancf));
   PetscCall(AncfSetUpWeight(ancf));
   PetscCall(AncfMassFactor(ancf));
-  if (ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
+  if (!ancf->njoints && ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
     PetscCall(AncfGroupSetUp(ancf));
   else
     PetscCall(AncfTSSetUp(ancf));
@@ -476,6 +477,8 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
       PetscCall(PetscViewerASCIIPrintf(viewer, "        retardation times: axial %g s, bending %g s\n",
                                        (double)m->spec.axialdamping, (double)m->spec.bendingdamping));
   }
+  if (ancf->njoints)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "joints %" PetscInt_FMT ", by elimination of coordinates\n", ancf->njoints));
   if (ancf->nbeams > 10) PetscCall(PetscViewerASCIIPrintf(viewer, "and %" PetscInt_FMT " more beams\n", ancf->nbeams - 10));
   if (ancf->setup) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "form: %s\n", AncfForms[ancf->form]));
@@ -497,6 +500,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   a = *ancf;
   PetscCall(AncfGroupDestroy(a));
   PetscCall(AncfTSDestroy(a));
+  PetscCall(AncfJointDestroy(a));
   PetscCall(PetscFree7(a->e, a->v, a->a, a->load, a->weight, a->steady, a->rest));
   PetscCall(PetscFree2(a->fixed, a->mass));
   PetscCall(PetscFree(a->loadend));

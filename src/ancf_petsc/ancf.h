@@ -54,6 +54,24 @@ FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, Pet
   start. how: ANCF_END_PIN or ANCF_END_CLAMP.
 */
 FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
+/* How a joint holds nodes together. Ball: one position. Rigid: one position, and the tangents turn together. */
+typedef enum { ANCF_JOINT_BALL, ANCF_JOINT_RIGID } AncfJointType;
+/*
+  Join nodes that lie at the same point, before AncfSetUp(). The element carries no twist: a rigid joint of two beams keeps the
+  angle between their tangents, one of three or more keeps all tangents in one turning frame; each beam's stretch is its own,
+  but for two collinear beams of equal EA, whose gradients are one. Refused by AncfSetUp(): nodes apart, a node in two joints,
+  tangents that are neither collinear nor 1e-3 rad apart, several supports in one joint. type: ball or rigid. n: number of
+  nodes, >= 2. beam: their beams, n. node: their numbers in their beams, n. joint: its number, or NULL.
+*/
+FROND_EXTERN PetscErrorCode AncfAddJoint(Ancf ancf, AncfJointType type, PetscInt n, const PetscInt beam[], const PetscInt node[],
+                                         PetscInt *joint);
+/* n: number of joints. */
+FROND_EXTERN PetscErrorCode AncfGetNumJoints(Ancf ancf, PetscInt *n);
+/*
+  Generalised force of a joint on one of its nodes now. joint: number. k: which of its nodes, from 0. f: 6, position part in N,
+  gradient part in N m.
+*/
+FROND_EXTERN PetscErrorCode AncfGetJointForce(Ancf ancf, PetscInt joint, PetscInt k, PetscReal f[6]);
 /* Gravitational acceleration. g: 3, m/s^2, finite, default 0. Source: the paper, Eq. 24. */
 FROND_EXTERN PetscErrorCode AncfSetGravity(Ancf ancf, const PetscReal g[3]);
 /*

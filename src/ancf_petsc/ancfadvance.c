@@ -123,6 +123,7 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(TSSetTime(ancf->ts, t)); /* sums of steps may be off by round-off */
   PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));
   PetscCall(AncfTSPull(ancf));
+  if (ancf->njoints) PetscCall(AncfJointSync(ancf, PETSC_FALSE, NULL));
   PetscCall(AncfMoveNodes(ancf, t));
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);

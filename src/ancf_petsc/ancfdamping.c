@@ -215,6 +215,10 @@ PetscErrorCode AncfAssembleViscous(Ancf ancf, const PetscReal *e, const PetscRea
         AncfScaledExpand(H[h], AncfLoad(b->l), i, k[h]);
         AncfClearFixed(ancf, b, i, k[h]);
       }
+      if (AncfInJoint(ancf, idx[0]) || AncfInJoint(ancf, idx[1])) {
+        PetscCall(AncfNetworkElement(ancf, P, idx[0], k[0], k[1]));
+        continue;
+      }
       if (bs == 6) {
         PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, k[0], ADD_VALUES));
         continue;

@@ -26,6 +26,28 @@ typedef struct {
   AncfEnd how;
 } AncfSupport;
 
+/* One scalar equation of a joint, see ancfconstraint.c. */
+typedef enum { ANCF_ROW_POSITION, ANCF_ROW_EQUAL, ANCF_ROW_ANGLE, ANCF_ROW_FOLLOW } AncfRowKind;
+typedef struct {
+  AncfRowKind kind;
+  int k, c;       /* node of the joint; component or basis vector */
+  PetscReal s[3]; /* EQUAL: sign; ANGLE: cosine; FOLLOW: the direction as s0 t0 + s1 tr + s2 t0 x tr */
+} AncfRow;
+
+/* Nodes of beams held together. Local coordinates: positions of its nodes, then, if rigid, their gradients. */
+typedef struct {
+  AncfJointType type;
+  PetscInt n, *beam, *node, *at; /* its nodes; at: among all nodes */
+  PetscInt nrows, nloc, ref;     /* ref: node whose tangent with the first one's gives a frame; -1: all collinear */
+  PetscBool linear, fresh;       /* fresh: choose dependent coordinates and normals anew */
+  AncfRow *row;
+  PetscReal (*normal)[2][3];       /* of each node's tangent, for FOLLOW */
+  PetscInt *dep;                   /* dependent local coordinates, one per row; -1 before they are chosen */
+  PetscReal *G, *Gdot, *T, *LU;    /* rows, their rates, e_dep = T e: nrows x nloc; factored dependent columns, nrows x nrows */
+  PetscReal *x, *v, *lambda, *phi; /* local coordinates and velocities; forces and values of the rows */
+  PetscInt *pivot;
+} AncfJoint;
+
 typedef struct {
   AncfBeamSpec spec;
   PetscInt node, element;          /* first ones */
@@ -82,7 +104,15 @@ struct _p_Ancf {
   AncfSupport *supports;
   PetscInt nsupports, maxsupports;
   unsigned char *fixed; /* per node, ANCF_FIX_* */
-  PetscReal *mass;      /* banded Cholesky factor, 2 rows per node x 4 */
+  AncfJoint *joints;
+  PetscInt njoints, maxjoints;
+  PetscInt *jointof, *localof; /* per node: its joint or -1, and its number there; NULL without joints */
+  PetscReal *je, *jv, *ja;     /* coordinates as the beams see them, nodes x 6; NULL without joints */
+  PetscReal *jrow;             /* accelerations that the rows of dependent coordinates carry through a step */
+  Mat JM;                      /* mass with joints, for accelerations */
+  KSP JK;
+  PetscBool jfactored;
+  PetscReal *mass; /* banded Cholesky factor, 2 rows per node x 4 */
 
   TS ts;
   Vec U, V;
@@ -132,6 +162,40 @@ extern PetscErrorCode AncfMotionCreate(Ancf ancf);
 extern void AncfMove(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t);
 
+/* ancfjoint.c */
+extern PetscErrorCode AncfJointSetUp(Ancf ancf);
+extern PetscErrorCode AncfJointDestroy(Ancf ancf);
+/* PETSC_ERR_ARG_INCOMP when nodes of a joint lie or move apart. */
+extern PetscErrorCode AncfJointCheck(Ancf ancf, const char function[], const PetscReal *e, const PetscReal *v);
+
+/* ancfconstraint.c */
+extern void AncfRowsEvaluate(const AncfJoint *j, const PetscReal *x, const PetscReal *v, PetscReal *phi, PetscReal *G,
+                             PetscReal *Gdot, const PetscReal *lambda, PetscReal *H);
+extern PetscInt AncfJointCoordinate(const AncfJoint *j, PetscInt local);
+extern void AncfJointNormals(AncfJoint *j, const PetscReal *x);
+/* Dependent coordinates of the state put right, and chosen anew where they serve badly (changed; may be NULL) or if fresh. */
+extern PetscErrorCode AncfJointSync(Ancf ancf, PetscBool fresh, PetscBool *changed);
+/* Coordinates, velocities, accelerations (each with its stride; v, a may be NULL) as the beams see them: into je, jv, ja. */
+extern PetscErrorCode AncfJointState(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, const PetscReal *a,
+                                     PetscInt astride);
+/* f of the free coordinates += the joints' forces; rows of dependent ones: x less the acceleration they carry (x NULL: 0). */
+extern PetscErrorCode AncfJointReduce(Ancf ancf, PetscReal *f, PetscInt fstride, const PetscReal *x, PetscInt stride);
+extern PetscErrorCode AncfJointAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
+                                            PetscInt astride);
+
+/* ancfnetwork.c: matrices of beams with joints. Adds the matrix k of n coordinates, dependent ones replaced, in rows and columns
+   shifted by these numbers within each node's block; pattern: all places that this may ever touch, with zeros. */
+extern PetscErrorCode AncfNetworkAdd(Ancf ancf, Mat P, PetscInt n, const PetscInt coord[], const PetscReal k[], PetscInt row,
+                                     PetscInt col, PetscBool pattern);
+extern PetscErrorCode AncfNetworkElement(Ancf ancf, Mat P, PetscInt node, const PetscReal k[144], const PetscReal m[144]);
+extern PetscErrorCode AncfNetworkGeometric(Ancf ancf, Mat P);
+extern PetscErrorCode AncfNetworkCreate(Ancf ancf, PetscInt bs, PC pc, Mat *J);
+static inline PetscBool AncfInJoint(const Ancf ancf, PetscInt node)
+{
+  return ancf->jointof && ancf->jointof[node] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+extern PetscBool AncfIsDependent(const Ancf ancf, PetscInt coordinate);
+
 /* ancfloads.c */
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
 extern void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscReal Q[3], PetscReal dQ[9]);
@@ -141,6 +205,11 @@ extern PetscErrorCode AncfSetUpBatches(Ancf ancf);
 extern PetscErrorCode AncfSetUpLaneBeams(Ancf ancf);
 extern PetscErrorCode AncfPrefixTS(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
+
+/* ancfresidual.c */
+/* M (a + damping v) + internal damping + Q^e - Q^g - Q^a, the forces of joints handed on to free coordinates; identity rows. */
+extern PetscErrorCode AncfMotionResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
+                                         PetscReal *f, PetscInt fstride);
 
 /* ancfts.c: Push and Pull copy the state into and out of the vectors of TS; Push makes TS restart. */
 extern PetscErrorCode AncfTSCreate(Ancf ancf);
@@ -157,7 +226,8 @@ extern PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt strid
 /* a = M^-1 (Q^g + Q^a - Q^e - C v), v may be NULL, prescribed values in eliminated rows. */
 extern PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
                                                PetscInt astride);
-extern PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f);
+/* What supports and joints must supply at each node; supports: with the joints' forces handed on to the supports. */
+extern PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f, PetscBool supports);
 
 extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
 
@@ -165,6 +235,9 @@ extern PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W);
  * coordinates. Form and stride follow from the block size of P. */
 extern PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal shift,
                                    PetscReal gv, PetscReal diag, Mat J, Mat P);
+/* P += elements' tangent (e NULL: none) + shift M */
+extern PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P);
+extern PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P);
 extern PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P);
 extern PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, PetscBool choose, Mat *J);
 /* Rows of eliminated coordinates: f = x - prescribed acceleration; x NULL: f = that acceleration. */

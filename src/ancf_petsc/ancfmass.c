@@ -159,7 +159,7 @@ PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3])
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetReaction: call AncfSetUp() first");
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
-  PetscCall(AncfSupportForces(ancf, r));
+  PetscCall(AncfSupportForces(ancf, r, PETSC_TRUE));
   f[0] = f[1] = f[2] = 0;
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     if (ancf->fixed[j] & ANCF_FIX_POSITION)

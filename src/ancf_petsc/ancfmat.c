@@ -40,7 +40,7 @@ static inline void AncfElementMatrix(Ancf ancf, const AncfBatch *b, PetscInt lan
   Adds the element matrices to P, whose node blocks have 6 rows (second-order form) or 12 with the equations of motion in
   the last 6 (first-order form): there the tangent takes the columns of e and the mass those of v.
 */
-static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P)
+PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stride, PetscReal shift, Mat P)
 {
   PetscReal k[144], m[144], blk[576];
   AncfLanes zero[ANCF_TANGENT] = {{0}};
@@ -53,11 +53,20 @@ static PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscI
     AncfSection s = AncfBatchSection(b);
     AncfLanes x[12], Q[12], K[ANCF_TANGENT];
 
-    AncfGather(ancf, b, e, stride, ancf->rest, x);
-    AncfElementTangent(&ancf->rule, &s, x, Q, K);
+    if (e) {
+      AncfGather(ancf, b, e, stride, ancf->rest, x);
+      AncfElementTangent(&ancf->rule, &s, x, Q, K);
+    } else
+      PetscCall(PetscMemcpy(K, zero, sizeof(K)));
     for (PetscInt i = 0; i < b->n; i++) {
       PetscInt idx[2] = {b->node[i], b->node[i] + 1};
 
+      if (AncfInJoint(ancf, idx[0]) || AncfInJoint(ancf, idx[1])) {
+        AncfElementMatrix(ancf, b, i, K, bs == 6 ? shift : 0, k);
+        AncfElementMatrix(ancf, b, i, zero, shift, m);
+        PetscCall(AncfNetworkElement(ancf, P, idx[0], k, m));
+        continue;
+      }
       if (bs == 6) {
         AncfElementMatrix(ancf, b, i, K, shift, k);
         PetscCall(MatSetValuesBlocked(P, 2, idx, 2, idx, k, ADD_VALUES));
@@ -93,6 +102,13 @@ static PetscErrorCode AncfAssembleMoments(Ancf ancf, const PetscReal *e, PetscIn
 
     if (ancf->fixed[j] & ANCF_FIX_GRADIENT || (M[0] == 0 && M[1] == 0 && M[2] == 0)) continue;
     AncfMomentForce(M, e + j * stride + 3, Q, dQ);
+    if (ancf->njoints) {
+      const PetscInt coord[3] = {6 * j + 3, 6 * j + 4, 6 * j + 5};
+
+      for (int c = 0; c < 9; c++) dQ[c] *= -ancf->loadscale;
+      PetscCall(AncfNetworkAdd(ancf, P, 3, coord, dQ, bs - 6, 0, PETSC_FALSE));
+      continue;
+    }
     PetscCall(PetscArrayzero(blk, 144));
     for (int r = 0; r < 3; r++)
       for (int c = 0; c < 3; c++) blk[bs * (bs - 3 + r) + 3 + c] = -ancf->loadscale * dQ[3 * r + c];
@@ -102,7 +118,7 @@ static PetscErrorCode AncfAssembleMoments(Ancf ancf, const PetscReal *e, PetscIn
 }
 
 /* Diagonal entries of eliminated coordinates, and in the first-order form the rows shift edot - v. */
-static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
+PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
 {
   PetscReal blk[144];
   PetscInt bs;
@@ -110,10 +126,11 @@ static PetscErrorCode AncfAssembleNodes(Ancf ancf, PetscReal shift, Mat P)
   PetscFunctionBegin;
   PetscCall(MatGetBlockSize(P, &bs));
   for (PetscInt j = 0; j < ancf->nnodes; j++) {
-    if (bs == 6 && !ancf->fixed[j]) continue;
+    if (bs == 6 && !ancf->fixed[j] && !AncfInJoint(ancf, j)) continue;
     PetscCall(PetscArrayzero(blk, 144));
     for (int c = 0; c < 6; c++) {
-      if (ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) blk[(bs + 1) * (bs - 6 + c)] = shift;
+      if (ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT) || AncfIsDependent(ancf, 6 * j + c))
+        blk[(bs + 1) * (bs - 6 + c)] = shift;
       if (bs == 12) {
         blk[13 * c] = shift;
         blk[12 * c + 6 + c] = -1;
@@ -146,10 +163,15 @@ PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, const PetscReal *v, P
       s->gv = gv;
     }
   } else {
+    if (ancf->njoints) {
+      PetscCall(AncfJointState(ancf, e, v, stride, NULL, 0));
+      e = ancf->je, v = v ? ancf->jv : NULL, stride = 6;
+    }
     PetscCall(MatZeroEntries(P));
     PetscCall(AncfAssembleElements(ancf, e, stride, shift, P));
     if (v) PetscCall(AncfAssembleViscous(ancf, e, v, stride, gv, P));
     PetscCall(AncfAssembleMoments(ancf, e, stride, P));
+    PetscCall(AncfNetworkGeometric(ancf, P));
     PetscCall(AncfAssembleNodes(ancf, diag, P));
   }
   PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
@@ -446,6 +468,10 @@ PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, PetscBool choose,
   char prefix[256];
 
   PetscFunctionBegin;
+  if (ancf->njoints) {
+    PetscCall(AncfNetworkCreate(ancf, bs, pc, J));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%sancf_", ancf->prefix ? ancf->prefix : ""));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mat_type", &mat));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-pc_type", &given));

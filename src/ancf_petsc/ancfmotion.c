@@ -71,6 +71,7 @@ PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t)
   PetscFunctionBegin;
   if (!ancf->motion) PetscFunctionReturn(PETSC_SUCCESS);
   MoveNodes(ancf, t, PETSC_TRUE);
+  if (ancf->njoints) PetscCall(AncfJointSync(ancf, PETSC_FALSE, NULL));
   if (ancf->form == ANCF_FORM_SECOND)
     PetscCall(AncfTSTouch(ancf));
   else
@@ -146,7 +147,7 @@ PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, Pets
   PetscFunctionBegin;
   PetscCall(MotionNode(ancf, "AncfGetNodeReaction", beam, node, &j));
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
-  PetscCall(AncfSupportForces(ancf, r));
+  PetscCall(AncfSupportForces(ancf, r, PETSC_TRUE));
   for (int c = 0; c < 6; c++) f[c] = ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT) ? r[6 * j + c] : 0;
   PetscCall(PetscFree(r));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -125,6 +125,7 @@ PetscErrorCode AncfSetState(Ancf ancf, PetscReal t, const PetscReal *e, const Pe
                "AncfSetState: beam %" PetscInt_FMT ", node %" PetscInt_FMT ": velocity %g of a fixed coordinate must be zero", b,
                i / 6 - ancf->beams[b].node, (double)edot[i]);
   }
+  if (ancf->njoints) PetscCall(AncfJointCheck(ancf, "AncfSetState", e, edot));
   if (e != ancf->e) PetscCall(PetscArraycpy(ancf->e, e, 6 * ancf->nnodes));
   if (edot != ancf->v) PetscCall(PetscArraycpy(ancf->v, edot, 6 * ancf->nnodes));
   PetscCall(PetscArraycpy(ancf->rest, e, 6 * ancf->nnodes));

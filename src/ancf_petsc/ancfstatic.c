@@ -11,7 +11,12 @@ static PetscErrorCode StaticFunction(SNES snes, Vec X, Vec F, void *ctx)
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfResidual(ancf, x, 6, NULL, 0, f, 6));
+  if (ancf->njoints) {
+    PetscCall(AncfJointState(ancf, x, NULL, 6, NULL, 0));
+    PetscCall(AncfResidual(ancf, ancf->je, 6, NULL, 0, f, 6));
+    PetscCall(AncfJointReduce(ancf, f, 6, NULL, 0));
+  } else
+    PetscCall(AncfResidual(ancf, x, 6, NULL, 0, f, 6));
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++)
     if (ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[i] = x[i] - ancf->rest[i];
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -79,6 +84,21 @@ static PetscErrorCode StaticBalanced(Ancf ancf, SNES snes, PetscBool *balanced)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Joints: dependent coordinates in X, which the equations have left alone, and new ones where the old serve badly. */
+static PetscErrorCode StaticSync(Ancf ancf, Vec X)
+{
+  PetscScalar *x;
+
+  PetscFunctionBegin;
+  if (!ancf->njoints) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(X, &x));
+  PetscCall(PetscArraycpy(ancf->e, x, 6 * ancf->nnodes));
+  PetscCall(AncfJointSync(ancf, PETSC_FALSE, NULL));
+  PetscCall(PetscArraycpy(x, ancf->e, 6 * ancf->nnodes));
+  PetscCall(VecRestoreArray(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* From load factor 0 to 1; a failed step is halved and tried again from the last equilibrium. */
 static PetscErrorCode StaticSteps(Ancf ancf, SNES snes, Vec X, PetscReal step, SNESConvergedReason *reason)
 {
@@ -98,6 +118,7 @@ static PetscErrorCode StaticSteps(Ancf ancf, SNES snes, Vec X, PetscReal step, S
     if (*reason > 0) PetscCall(StaticBalanced(ancf, snes, &balanced));
     if (balanced) {
       done = ancf->loadscale;
+      PetscCall(StaticSync(ancf, X));
       PetscCall(VecCopy(X, good));
     } else {
       step /= 2;

@@ -1,0 +1,201 @@
+/*
+  ancfresidual.c - the equations of motion of all beams (Eqs. 28-30), element by element or beam by beam in vector lanes.
+
+  Eliminated coordinates (Sect. 2.3) keep their rows, so that the block structure is regular: the beams see their
+  prescribed values whatever the solver proposes, and their rows read eddot = 0.
+*/
+#include "ancfbatch.h"
+
+PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
+{
+  PetscReal w = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < ancf->nbatches; k++) {
+    const AncfBatch *b = &ancf->batches[k];
+    AncfSection s = AncfBatchSection(b);
+    AncfLanes e[12], Q[12], U;
+
+    AncfGather(ancf, b, ancf->e, 6, ancf->rest, e);
+    AncfElementForce(&ancf->rule, &s, e, Q, &U);
+    for (PetscInt i = 0; i < b->n; i++) w += U[i];
+  }
+  *W = w;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Elements in lanes; f holds minus the loads already. */
+static void ResidualElements(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                             PetscInt fstride)
+{
+  for (PetscInt k = 0; k < ancf->nbatches; k++) {
+    const AncfBatch *b = &ancf->batches[k];
+    AncfSection s = AncfBatchSection(b);
+    AncfLanes x[12], Q[12];
+
+    AncfGather(ancf, b, e, stride, ancf->rest, x);
+    AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+    if (a) {
+      AncfGather(ancf, b, a, astride, ancf->restm, x);
+      AncfElementInertia(AncfLoad(b->rhoA), s.l, x, Q);
+    }
+    for (PetscInt i = 0; i < b->n; i++) {
+      PetscReal *fj = f + b->node[i] * fstride;
+
+      for (int c = 0; c < 6; c++) fj[c] += Q[c][i];
+      for (int c = 0; c < 6; c++) fj[fstride + c] += Q[6 + c][i];
+    }
+  }
+}
+
+/* Beams in lanes: each node is read and written once. */
+static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e, PetscInt stride, const PetscReal *a,
+                          PetscInt astride, PetscReal *f, PetscInt fstride)
+{
+  const AncfSection full = {AncfLoad(b->EA), AncfLoad(b->EI), AncfLoad(b->l)};
+  AncfLanes x[12], y[12], left[6];
+
+  for (int c = 0; c < 12; c++) x[c] = y[c] = (AncfLanes){0};
+  for (int c = 0; c < 6; c++) left[c] = (AncfLanes){0};
+  AncfGatherLane(ancf, b, 0, e, stride, ancf->rest, x);
+  if (a) AncfGatherLane(ancf, b, 0, a, astride, ancf->restm, y);
+  for (PetscInt k = 0; k <= b->most; k++) {
+    AncfLanes Q[12], mass = AncfLoad(b->rhoA);
+    AncfSection s = full;
+
+    if (k < b->most) {
+      AncfGatherLane(ancf, b, k + 1, e, stride, ancf->rest, x + 6);
+      for (int i = 0; i < ANCF_LANES && k >= b->least; i++)
+        if (k >= b->elements[i]) AncfIdleLane(i, &s, &mass, x);
+      AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+      if (a) {
+        AncfGatherLane(ancf, b, k + 1, a, astride, ancf->restm, y + 6);
+        AncfElementInertia(mass, s.l, y, Q);
+      }
+    } else
+      for (int c = 0; c < 12; c++) Q[c] = (AncfLanes){0};
+    for (int c = 0; c < 6; c++) {
+      Q[c] += left[c];
+      left[c] = Q[6 + c];
+      x[c] = x[6 + c];
+      y[c] = y[6 + c];
+    }
+    for (int i = 0; i < ANCF_LANES; i++)
+      if (k <= b->elements[i])
+        for (int c = 0; c < 6; c++) f[(b->first[i] + k) * fstride + c] += Q[c][i];
+  }
+}
+
+PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                            PetscInt fstride)
+{
+  const PetscReal scale = ancf->loadscale;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->steady[6 * j + c] + ancf->load[6 * j + c]);
+  if (ancf->loadnow != 0)
+    for (PetscInt j = 0; j < ancf->nnodes; j++)
+      for (PetscInt c = 0; c < 6; c++)
+        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
+  if (ancf->lanebeams)
+    for (PetscInt k = 0; k < ancf->nlanebeams; k++) ResidualBeams(ancf, &ancf->lanebeams[k], e, stride, a, astride, f, fstride);
+  else
+    ResidualElements(ancf, e, stride, a, astride, f, fstride);
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
+    const PetscReal *M = ancf->moment + 3 * j;
+    PetscReal Q[3];
+
+    if (M[0] == 0 && M[1] == 0 && M[2] == 0) continue;
+    AncfMomentForce(M, ancf->fixed[j] & ANCF_FIX_GRADIENT ? ancf->rest + 6 * j + 3 : e + j * stride + 3, Q, NULL);
+    for (int c = 0; c < 3; c++) f[j * fstride + 3 + c] -= scale * Q[c];
+  }
+  PetscCall(PetscLogEventEnd(ANCF_Force, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
+{
+  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+    const unsigned char fix = ancf->fixed[j];
+
+    if (PetscLikely(!fix)) continue;
+    for (int c = 0; c < 6; c++) {
+      const PetscReal a = ancf->resta ? ancf->resta[6 * j + c] : 0;
+
+      if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] - a : a;
+    }
+  }
+}
+
+/* Mass-proportional damping, C = damping M, enters as the acceleration a + damping v; returns a itself without damping. */
+static const PetscReal *AncfDamped(Ancf ancf, const PetscReal *v, const PetscReal *a, PetscInt stride, PetscInt *outstride)
+{
+  *outstride = stride;
+  if (ancf->damping == 0) return a;
+  *outstride = 6;
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) ancf->damped[6 * j + c] = a[j * stride + c] + ancf->damping * v[j * stride + c];
+  return ancf->damped;
+}
+
+/* The full equations of motion at the current state, constraints ignored: what the supports must supply. */
+PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f, PetscBool supports)
+{
+  const PetscReal *a;
+  PetscInt stride;
+
+  PetscFunctionBegin;
+  PetscCall(AncfComputeAcceleration(ancf));
+  a = AncfDamped(ancf, ancf->v, ancf->a, 6, &stride);
+  PetscCall(AncfResidual(ancf, ancf->e, 6, a, stride, f, 6));
+  AncfAddViscous(ancf, ancf->e, ancf->v, 6, f, 6, NULL);
+  if (supports && ancf->njoints) {
+    PetscCall(AncfJointState(ancf, ancf->e, ancf->v, 6, NULL, 0));
+    PetscCall(AncfJointReduce(ancf, f, 6, NULL, 0));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfMotionResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
+                                  PetscReal *f, PetscInt fstride)
+{
+  const PetscReal *x = e, *xv = v, *xa = a, *m;
+  PetscInt xstride = stride, mstride;
+
+  PetscFunctionBegin;
+  if (ancf->njoints) {
+    PetscCall(AncfJointState(ancf, e, v, stride, a, stride));
+    x = ancf->je, xv = ancf->jv, xa = ancf->ja, xstride = 6;
+  }
+  m = AncfDamped(ancf, xv, xa, xstride, &mstride);
+  PetscCall(AncfResidual(ancf, x, xstride, m, mstride, f, fstride));
+  AncfAddViscous(ancf, x, xv, xstride, f, fstride, NULL);
+  if (ancf->njoints) PetscCall(AncfJointReduce(ancf, f, fstride, a, stride));
+  AncfFixRows(ancf, a, stride, f, fstride);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a = M^-1 (Q^g + Q^a - Q^e), coordinates and result with their own strides */
+PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal *a,
+                                        PetscInt astride)
+{
+  const PetscReal damping = v ? ancf->damping : 0;
+
+  PetscFunctionBegin;
+  if (ancf->njoints) {
+    PetscCall(AncfJointAcceleration(ancf, e, v, stride, a, astride));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AncfResidual(ancf, e, stride, ancf->restm, 6, a, astride));
+  if (v) AncfAddViscous(ancf, e, v, stride, a, astride, NULL);
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
+  AncfFixRows(ancf, NULL, 0, a, astride);
+  PetscCall(AncfMassSolve(ancf, a, astride));
+  for (PetscInt j = 0; j < ancf->nnodes && damping > 0; j++)
+    for (int c = 0; c < 6; c++)
+      if (!(ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) a[j * astride + c] -= damping * v[j * stride + c];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
