@@ -69,6 +69,13 @@ typedef struct {
   PetscInt joint;
 } SceneJoint;
 
+/* How a wall moves bodily. */
+typedef struct {
+  char motion[PETSC_MAX_PATH_LEN]; /* "": not at all, or it slides; "constant"; else the file of a table */
+  PetscReal omega[3], pivot[3];    /* rad/s, m */
+  PetscBool setpivot;
+} SceneWall;
+
 /* A regular grid of points; lo = hi along an axis makes a slice or a line. */
 typedef struct {
   char name[APP_NAME_LEN];
@@ -96,6 +103,9 @@ typedef struct {
   PetscReal lo[3], hi[3]; /* domain, m */
   PetscBool periodic[3], wall[6];
   PetscReal wallvelocity[6][3]; /* m/s */
+  SceneWall walls[6];
+  PetscReal forceramp; /* s */
+  char forcefile[PETSC_MAX_PATH_LEN];
   PetscReal fluidlo[3], fluidhi[3], fluidvelocity[3];
   ScenePressure pressure;
   PetscInt nbeams, nbodies;
@@ -138,7 +148,8 @@ typedef struct {
   PetscInt dim, nsurfaces;
   AppSurface *surfaces;
   PetscInt nfluid, nboundary;
-  PetscReal t; /* time, s */
+  Rigid mover[6]; /* prescribed motion of each wall that moves bodily, else NULL */
+  PetscReal t;    /* time, s */
   PetscInt step;
 } App;
 PetscErrorCode AppBuild(App *app);
@@ -206,6 +217,19 @@ PetscErrorCode AppFluidFill(App *app);
 /* appwall.c */
 PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth,
                              const PetscReal velocity[3], CoupleSurface *surface);
+
+/* appcsv.c: a table over time. */
+typedef struct {
+  PetscInt n;
+  PetscReal *t, *value; /* n, s; n x columns */
+} AppTable;
+PetscErrorCode AppTableRead(const char file[], const char *const names[], PetscReal tend, AppTable *table);
+PetscErrorCode AppTableDestroy(AppTable *table);
+
+/* appmotion.c */
+PetscErrorCode AppWallCreateMoving(App *app, PetscInt face, const char name[], PetscInt n, const PetscReal *x,
+                                   const PetscReal *volume, const PetscReal *depth, CoupleSurface *surface);
+PetscErrorCode AppBodyForce(App *app);
 
 /* appunknown.c: options that nothing has asked for are an error. */
 typedef struct {

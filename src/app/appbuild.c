@@ -6,7 +6,6 @@
 static PetscErrorCode build_sph(App *app)
 {
   AppScene *s = &app->scene;
-  PetscReal f[3];
 
   PetscFunctionBegin;
   app->dim = 3;
@@ -17,9 +16,7 @@ static PetscErrorCode build_sph(App *app)
   PetscCall(AppSceneCheck(s, app->dim));
   PetscCall(SphSetDomain(app->sph, s->lo, s->hi));
   PetscCall(SphSetPeriodic(app->sph, s->periodic));
-  PetscCall(SphGetBodyForce(app->sph, f));
-  for (int a = 0; a < 3 && s->buoyancy == BUOYANCY_RESOLVED; a++) f[a] += s->gravity[a];
-  PetscCall(SphSetBodyForce(app->sph, f));
+  PetscCall(AppBodyForce(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,7 +120,7 @@ static PetscInt wall_face(const AppScene *s, PetscInt dim, const PetscReal x[3])
     const PetscReal *v = s->wallvelocity[f];
     PetscBool outside = (PetscBool)(f % 2 ? x[f / 2] > s->hi[f / 2] : x[f / 2] < s->lo[f / 2]);
     if (!s->wall[f] || !outside) continue;
-    if (v[0] == 0 && v[1] == 0 && v[2] == 0) return f;
+    if (v[0] == 0 && v[1] == 0 && v[2] == 0 && !s->walls[f].motion[0]) return f;
     moving = f;
   }
   return moving;
@@ -155,7 +152,10 @@ static PetscErrorCode add_walls(App *app)
     }
     if (!m) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "wall_%s", SceneFaces[f]));
-    PetscCall(AppWallCreate(name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
+    if (s->walls[f].motion[0])
+      PetscCall(AppWallCreateMoving(app, f, name, m, fx, fvolume, fdepth, &surface));
+    else
+      PetscCall(AppWallCreate(name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
     PetscCall(add_surface(app, name, surface));
   }
   PetscCall(PetscFree3(fx, fvolume, fdepth));
@@ -267,6 +267,7 @@ PetscErrorCode AppDestroy(App *app)
   PetscCall(SphDestroy(&app->sph));
   PetscCall(AncfDestroy(&app->ancf));
   PetscCall(RigidDestroy(&app->rigid));
+  for (int f = 0; f < 6; f++) PetscCall(RigidDestroy(&app->mover[f]));
   PetscCall(AppSceneDestroy(&app->scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

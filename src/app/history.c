@@ -157,6 +157,15 @@ static PetscErrorCode put_surfaces(AppHistory h, App *app)
     PetscCall(CoupleGetAudit(app->couple, i, &audit));
     PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_f", app->surfaces[i].name));
     PetscCall(put3(h, stem, force, "force of the fluid on this surface", audit.force));
+    for (int f = 0; f < 6; f++) {
+      char wall[32];
+      PetscReal X[3];
+      PetscCall(PetscSNPrintf(wall, sizeof(wall), "wall_%s", SceneFaces[f]));
+      if (!app->mover[f] || strcmp(wall, app->surfaces[i].name)) continue;
+      PetscCall(RigidGetState(app->mover[f], 0, X, NULL, NULL, NULL));
+      PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_", wall));
+      PetscCall(put3(h, stem, "m", "the wall's pivot", X));
+    }
     lost[0] = PetscMax(lost[0], norm3(audit.force_lost));
     lost[1] = PetscMax(lost[1], norm3(audit.moment_lost));
     lost[2] = PetscMax(lost[2], PetscAbsReal(audit.power_lost));

@@ -39,8 +39,8 @@ static PetscErrorCode default_name(const char file[], char name[])
 static PetscErrorCode read_domain(AppScene *s, SceneSet *set)
 {
   PetscInt buoyancy = s->buoyancy, pressure = s->pressure;
-  char key[6][32];
-  AppOpt wall[6];
+  char key[24][32];
+  AppOpt wall[24];
   const AppOpt opt[] = {
       {OPT_VEC, "gravity", "Acceleration of gravity, m/s^2", s->gravity, NULL, NULL},
       {OPT_CHOICE, "buoyancy", "Gravity on the fluid: resolved as a body force, or left out with weights reduced by Archimedes",
@@ -55,6 +55,10 @@ static PetscErrorCode read_domain(AppScene *s, SceneSet *set)
       {OPT_VEC, "fluid_hi", "Upper corner of the box filled with fluid, m (default: the domain's)", s->fluidhi, NULL,
        &set->fluidhi},
       {OPT_VEC, "fluid_velocity", "Initial velocity of the fluid, m/s", s->fluidvelocity, NULL, NULL},
+      {OPT_REAL, "body_force_ramp", "Time over which sph_body_force comes up linearly from 0, s (0: at once)", &s->forceramp,
+       NULL, NULL},
+      {OPT_STRING, "body_force_file", "CSV file with columns t, fx, fy, fz (s, m/s^2): body force on top of sph_body_force",
+       s->forcefile, NULL, NULL},
       {OPT_CHOICE, "fluid_pressure", "Initial pressure (default: hydrostatic when gravity is resolved)", &pressure, pressures,
        &set->pressure},
   };
@@ -67,10 +71,25 @@ static PetscErrorCode read_domain(AppScene *s, SceneSet *set)
   if (!set->fluidlo) PetscCall(PetscArraycpy(s->fluidlo, s->lo, 3));
   if (!set->fluidhi) PetscCall(PetscArraycpy(s->fluidhi, s->hi, 3));
   for (PetscInt i = 0; i < 6; i++) {
-    PetscCall(PetscSNPrintf(key[i], sizeof(key[i]), "%s_velocity", SceneFaces[i]));
-    wall[i] = (AppOpt){OPT_VEC, key[i], "Velocity of this wall, along itself, m/s", s->wallvelocity[i], NULL, NULL};
+    SceneWall *w = &s->walls[i];
+    static const char *const names[] = {"velocity", "motion", "omega", "pivot"};
+    for (PetscInt k = 0; k < 4; k++) PetscCall(PetscSNPrintf(key[4 * i + k], sizeof(key[0]), "%s_%s", SceneFaces[i], names[k]));
+    wall[4 * i] =
+        (AppOpt){OPT_VEC, key[4 * i], "Velocity of this wall, along itself unless it moves, m/s", s->wallvelocity[i], NULL, NULL};
+    wall[4 * i + 1] = (AppOpt){
+        OPT_STRING,
+        key[4 * i + 1],
+        "How this wall moves bodily: constant (its velocity and omega), or a CSV file with columns t, vx, vy, vz, wx, wy, wz",
+        w->motion,
+        NULL,
+        NULL};
+    wall[4 * i + 2] = (AppOpt){OPT_VEC,  key[4 * i + 2], "Angular velocity of this wall when its motion is constant, rad/s",
+                               w->omega, NULL,           NULL};
+    wall[4 * i + 3] =
+        (AppOpt){OPT_VEC,  key[4 * i + 3], "Point that this wall turns about, moving along, m (needed when it turns)",
+                 w->pivot, NULL,           &w->setpivot};
   }
-  PetscCall(AppOptionsRead("wall_", "Scene: walls", 6, wall));
+  PetscCall(AppOptionsRead("wall_", "Scene: walls", 24, wall));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -296,6 +315,8 @@ static PetscErrorCode check_given(const AppScene *s, const SceneSet *set)
   PetscFunctionBegin;
   PetscCheck(set->tend, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "time_end is needed: the time at which the run ends, s");
   PetscCheck(s->tend > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "time_end = %g s must be positive", (double)s->tend);
+  PetscCheck(s->forceramp >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "body_force_ramp = %g s must be 0 (none) or more",
+             (double)s->forceramp);
   PetscCheck(s->outevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "output_every = %g s must be 0 (every step) or more",
              (double)s->outevery);
   PetscCheck(s->histevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "history_every = %g s must be 0 (every step) or more",
@@ -339,6 +360,21 @@ PetscErrorCode AppSceneRead(AppScene *s, const char file[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A wall that turns needs a point to turn about. */
+static PetscErrorCode check_turn(const AppScene *s, PetscInt face)
+{
+  const SceneWall *w = &s->walls[face];
+  const PetscBool turns = (PetscBool)(w->omega[0] != 0 || w->omega[1] != 0 || w->omega[2] != 0);
+
+  PetscFunctionBegin;
+  PetscCheck(!turns || !strcmp(w->motion, "constant"), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "wall_%s_omega = %g,%g,%g rad/s: needs wall_%s_motion constant", SceneFaces[face], (double)w->omega[0],
+             (double)w->omega[1], (double)w->omega[2], SceneFaces[face]);
+  PetscCheck(!turns || w->setpivot, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "wall_%s_omega needs wall_%s_pivot: the point to turn about", SceneFaces[face], SceneFaces[face]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What can be judged once the dimension of the fluid is known. */
 PetscErrorCode AppSceneCheck(const AppScene *s, PetscInt dim)
 {
@@ -362,9 +398,13 @@ PetscErrorCode AppSceneCheck(const AppScene *s, PetscInt dim)
                "walls: %s is on axis %s, which is periodic", SceneFaces[i], axes[i / 2]);
     PetscCheck(!moves || s->wall[i], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "wall_%s_velocity is set but walls does not list %s",
                SceneFaces[i], SceneFaces[i]);
+    PetscCheck(!s->walls[i].motion[0] || s->wall[i], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "wall_%s_motion is set but walls does not list %s", SceneFaces[i], SceneFaces[i]);
+    PetscCall(check_turn(s, i));
+    if (s->walls[i].motion[0]) continue;
     PetscCheck(v[i / 2] == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "wall_%s_velocity = %g,%g,%g: a wall moves along itself only, its %s component must be 0", SceneFaces[i],
-               (double)v[0], (double)v[1], (double)v[2], axes[i / 2]);
+               "wall_%s_velocity = %g,%g,%g: a wall moves along itself only, its %s component must be 0, or set wall_%s_motion",
+               SceneFaces[i], (double)v[0], (double)v[1], (double)v[2], axes[i / 2], SceneFaces[i]);
   }
   PetscCheck(dim == 3 || !s->periodic[2], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
              "domain_periodic: z has no meaning in a 2D scene");

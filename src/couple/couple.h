@@ -88,6 +88,14 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreateBeam(Ancf ancf, PetscInt beam, Pe
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax,
                                                      CoupleSurface *surface);
 /*
+  Any markers that a prescribed body carries along, such as those of a wave paddle; the arrays are copied. rigid: the bodies, set
+  up; kept, not owned. body: number. name: copied. n: number of markers. x: n x 3, their places now, m. volume: n, m^3 (m^2 in
+  2D). depth: n, below the surface, m. surface: the new surface.
+*/
+FROND_EXTERN PetscErrorCode CoupleSurfaceCreateMoving(Rigid rigid, PetscInt body, const char name[], PetscInt n,
+                                                      const PetscReal *x, const PetscReal *volume, const PetscReal *depth,
+                                                      CoupleSurface *surface);
+/*
   Markers moving together; the arrays are copied. comm: communicator of the fluid. name: copied. n: number of markers. x: n x
   3, m. volume: n, m^3 (2D: m^2). depth: n, m. velocity: 3, m/s, constant; 0: at rest. surface: the new surface.
 */

@@ -237,20 +237,14 @@ static PetscErrorCode Destroy_Rigid(CoupleSurface s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  CoupleSurfaceCreateRigid - Surface of body `body` (set up before), filled with BCE markers dp apart to depthmax (m) below its
-surface.
-@*/
-PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax,
-                                        CoupleSurface *surface)
+/* A surface of the body without markers. */
+static PetscErrorCode CreateBody(Rigid rigid, PetscInt body, const char name[], Body **out, CoupleSurface *surface)
 {
   const CoupleSurfaceOps ops = {GetMarkers_Rigid, Kinematics_Rigid, ZeroLoads_Rigid, ApplyForces_Rigid,
                                 Advance_Rigid,    Momentum_Rigid,   View_Rigid,      Destroy_Rigid,
                                 StateSize_Rigid,  Save_Rigid,       Load_Rigid};
   RigidBodySpec spec;
   PetscInt joints;
-  PetscReal *a;
-  char name[64];
   Body *b;
 
   PetscFunctionBegin;
@@ -263,13 +257,69 @@ PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim
   b->jointed = joints > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(RigidGetState(rigid, body, NULL, NULL, b->V0, b->omega0));
   PetscCall(RigidGetTime(rigid, &b->t0));
-  PetscCall(RigidFillMarkers(&spec, dim, dp, depthmax, &b->n, &b->xb, &b->volume, &b->depth));
-  PetscCall(PetscMalloc3(3 * b->n, &b->x0, 3 * b->n, &b->x, 3 * b->n, &b->v));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "body_%" PetscInt_FMT, body));
   PetscCall(CoupleSurfaceCreate(PETSC_COMM_SELF, name, &ops, b, surface));
   PetscCall(CoupleSurfaceSetHeld(*surface, spec.motion != RIGID_FREE ? PETSC_TRUE : PETSC_FALSE));
+  *out = b;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for the state of the markers in xb, and their places now. */
+static PetscErrorCode PlaceMarkers(CoupleSurface surface, Body *b)
+{
+  PetscReal *a;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(3 * b->n, &b->x0, 3 * b->n, &b->x, 3 * b->n, &b->v));
   PetscCall(PetscMalloc1(3 * b->n, &a));
-  PetscCall(Kinematics_Rigid(*surface, 0.0, b->x0, b->v, a));
+  PetscCall(Kinematics_Rigid(surface, 0.0, b->x0, b->v, a));
   PetscCall(PetscFree(a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CoupleSurfaceCreateRigid - Surface of body `body` (set up before), filled with BCE markers dp apart to depthmax (m) below its
+surface.
+@*/
+PetscErrorCode CoupleSurfaceCreateRigid(Rigid rigid, PetscInt body, PetscInt dim, PetscReal dp, PetscReal depthmax,
+                                        CoupleSurface *surface)
+{
+  RigidBodySpec spec;
+  char name[64];
+  Body *b;
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetBody(rigid, body, &spec));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "body_%" PetscInt_FMT, body));
+  PetscCall(CreateBody(rigid, body, name, &b, surface));
+  PetscCall(RigidFillMarkers(&spec, dim, dp, depthmax, &b->n, &b->xb, &b->volume, &b->depth));
+  PetscCall(PlaceMarkers(*surface, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CoupleSurfaceCreateMoving - Markers that prescribed body `body` (set up before) carries along from where they are now.
+@*/
+PetscErrorCode CoupleSurfaceCreateMoving(Rigid rigid, PetscInt body, const char name[], PetscInt n, const PetscReal *x,
+                                         const PetscReal *volume, const PetscReal *depth, CoupleSurface *surface)
+{
+  PetscReal X[3], q[4], R[9];
+  Body *b;
+
+  PetscFunctionBegin;
+  PetscCall(CreateBody(rigid, body, name, &b, surface));
+  b->n = n;
+  PetscCall(PetscMalloc1(3 * n, &b->xb));
+  PetscCall(PetscMalloc1(n, &b->volume));
+  PetscCall(PetscMalloc1(n, &b->depth));
+  PetscCall(PetscArraycpy(b->volume, volume, n));
+  PetscCall(PetscArraycpy(b->depth, depth, n));
+  PetscCall(RigidGetState(rigid, body, X, q, NULL, NULL));
+  RigidRotationMatrix(q, R);
+  for (PetscInt i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++) {
+      b->xb[3 * i + k] = 0.0;
+      for (int l = 0; l < 3; l++) b->xb[3 * i + k] += R[3 * l + k] * (x[3 * i + l] - X[l]);
+    }
+  PetscCall(PlaceMarkers(*surface, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

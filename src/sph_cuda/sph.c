@@ -71,6 +71,8 @@ PetscErrorCode SphDestroy(Sph *sph)
   if (!*sph) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*sph)->ops) PetscCall((*(*sph)->ops->destroy)(*sph));
   PetscCall(SphFreeArrays(*sph));
+  PetscCall(PetscFree((*sph)->forcetime));
+  PetscCall(PetscFree((*sph)->force));
   PetscCall(PetscFree(*sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -236,6 +238,7 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
   const char *which = "acoustic";
 
   PetscFunctionBegin;
+  SphBodyForceAt(sph, sph->t);
   PetscCall((*sph->ops->limits)(sph, &vmax, &amax));
   limit = p->cfl * p->h / (p->cs + vmax);
   if (amax > 0.0 && p->cfl * PetscSqrtReal(p->h / amax) < limit) {
@@ -279,10 +282,12 @@ PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
   PetscFunctionBegin;
   PetscCheck(!sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepBegin() was called twice without SphStepEnd()");
   PetscCheck(dt > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the time step %g s must be > 0", (double)dt);
+  SphBodyForceAt(sph, sph->t);
   PetscCall(EvaluateRates(sph));
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
   if (sph->par.integrator != SPH_INTEGRATOR_VERLET) PetscCall((*sph->ops->halfstep)(sph, dt));
   PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
+  if (sph->par.integrator != SPH_INTEGRATOR_VERLET) SphBodyForceAt(sph, sph->t + 0.5 * dt);
   sph->dt = dt;
   sph->insidestep = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

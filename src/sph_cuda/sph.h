@@ -165,6 +165,12 @@ FROND_EXTERN PetscErrorCode SphSetGroupSlip(Sph sph, PetscInt group, SphSlipType
 /* Body force per mass. f: 3, m/s^2, default 0. */
 FROND_EXTERN PetscErrorCode SphSetBodyForce(Sph sph, const PetscReal f[3]);
 /*
+  Part of the body force that changes with time, on top of SphSetBodyForce(), such as a ramp of the seed's accelerating channel;
+  linear between the entries, constant before and after; before SphSetUp(). n: entries, 0 for none. t: n, s, increasing. f: n x 3,
+  m/s^2.
+*/
+FROND_EXTERN PetscErrorCode SphSetBodyForceTable(Sph sph, PetscInt n, const PetscReal t[], const PetscReal f[]);
+/*
   Corners of the domain, before SphSetUp(); markers that leave it are taken out. lo: 3, m. hi: 3, m, above lo; the third
   number is ignored in 2D.
 */

@@ -87,6 +87,9 @@ struct _p_Sph {
   SphParams par;
   PetscBool hset, hratioset, vmaxset, csset, domainset, setup;
   PetscReal hratio;
+  PetscReal fconst[3]; /* constant part of the body force, m/s^2; par.f is the whole at the time of the last evaluation */
+  PetscInt nforce;     /* entries of its table */
+  PetscReal *forcetime, *force; /* nforce, s; nforce x 3, m/s^2 */
 
   PetscInt n, nfluid, ngroups; /* markers; fluid ones; boundary groups */
   PetscInt cap;                /* room in the arrays below */
@@ -143,6 +146,9 @@ static inline int SphTwoVelocities(const SphParams *p)
  * that no term reads. */
 extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share);
 extern PetscErrorCode SphFreeArrays(Sph sph);
+
+/* sphforce.c: par.f at time t (s). */
+extern void SphBodyForceAt(Sph sph, PetscReal t);
 
 /* sphwall.c: factor r in v_ext = v_b + r (v_b - <v>) for a marker `depth` below a flat surface. */
 /* The factor -1 makes v_ext = <v>, so that no friction acts: free slip. */

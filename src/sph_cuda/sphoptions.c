@@ -276,7 +276,8 @@ PetscErrorCode SphSetBodyForce(Sph sph, const PetscReal f[3])
 {
   PetscFunctionBegin;
   PetscCall(CheckFinite3(sph, "sph_body_force", f));
-  for (int k = 0; k < 3; k++) sph->par.f[k] = f[k];
+  for (int k = 0; k < 3; k++) sph->fconst[k] = f[k];
+  SphBodyForceAt(sph, sph->t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -505,6 +506,9 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
                                    (double)p->dtmin));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
+  if (sph->nforce)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  body force over time: %" PetscInt_FMT " entries, %g to %g s\n", sph->nforce,
+                                     (double)sph->forcetime[0], (double)sph->forcetime[sph->nforce - 1]));
   if (p->dtfixed > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_dt %g s (fixed)\n", (double)p->dtfixed));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  domain (%g, %g, %g) to (%g, %g, %g) m, periodic %d %d %d\n", (double)p->lo[0],
                                    (double)p->lo[1], (double)p->lo[2], (double)p->hi[0], (double)p->hi[1], (double)p->hi[2],
