@@ -59,6 +59,18 @@ with end, start:
     apptest.check(rest.sum() > 100 and (x0[rest] == x1[rest]).all(), "the other walls rest")
     apptest.check((end["markers/group"][:] == -2).sum() == 0, "no marker leaves")
 
+# A restart goes on with the wall and the force where they were.
+frond.write("push.csv", "t,fx\n0,0\n0.1,5\n")
+push = ["-body_force_file", "push.csv", "-output_dir", "out_again", "-output_overwrite"]
+frond.runs("run", "paddle.yaml", *push)
+whole = history("out_again")
+frond.runs("run", "paddle.yaml", *push, "-checkpoint_every", "0.05", "-checkpoint_keep", "9")
+points = sorted(n for n in os.listdir(frond.path("out_again")) if n.startswith("checkpoint_"))
+apptest.check(len(points) == 2, "2 checkpoints: %s" % points)
+frond.runs("run", "paddle.yaml", "-body_force_file", "push.csv", "-output_dir", "out_again", "-restart", os.path.join("out_again", points[0]))
+again = history("out_again")
+apptest.check(len(whole) == len(again) and all((whole[c] == again[c]).all() for c in whole.dtype.names), "restart with a paddle and a force over time: the same bits")
+
 # A box full of fluid in uniform motion.
 faces = ("xmin", "xmax", "ymin", "ymax")
 BOX = """
