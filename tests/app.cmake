@@ -16,6 +16,7 @@ frond_app_test(app_help unit)
 frond_app_test(app_probes unit)
 frond_app_test(app_checkpoint unit)
 frond_app_test(app_motion unit)
+frond_app_test(app_links unit)
 frond_app_test(app_rigid validation)
 frond_app_test(app_examples validation)
 

@@ -79,6 +79,28 @@ bad("-scene_name ../../x", "scene_name", "letters")
 bad("-bodies ball,rod", "rod", "beam")
 bad("-beams stick", "stick", "needs", "start")
 
+# Links between beams.
+PAIR = ("-beams rod,arm -beam_arm_start 0.2,0.2,0.2 -beam_arm_end 0.2,0.35,0.2 -beam_arm_elements 2 -beam_arm_diameter 0.06 "
+        "-beam_arm_density 2000 -beam_arm_young 1e6 -beam_arm_end0 free -links knee ")
+bad(PAIR, "link 'knee'", "link_knee_nodes")
+bad(PAIR + "-link_knee_nodes rod.end", "link_knee_nodes", "1 node", "2 or more")
+bad(PAIR + "-link_knee_nodes rod.end,leg.start", "link_knee_nodes", "no beam 'leg'")
+bad(PAIR + "-link_knee_nodes rod.end,arm", "link_knee_nodes", "'arm' is no node")
+for node in ("3", "-1", "middle"):
+    bad(PAIR + "-link_knee_nodes rod.end,arm." + node, "link_knee_nodes", node, "beam 'arm'", "start, end or 0 to 2")
+bad(PAIR + "-link_knee_nodes rod.end,arm.1", "link 'knee'", "node 1 of beam 'arm'", r"0\.075 m", "beam 'rod'", "same point")
+bad(PAIR + "-link_knee_nodes rod.end,rod.2", "link 'knee'", "node 2 of beam 'rod'", "already")
+bad(PAIR + "-links knee,twin -link_knee_nodes rod.end,arm.start -link_twin_nodes arm.start,rod.end", "link 'twin'", "link 'knee'",
+    "already")
+bad(PAIR + "-link_knee_nodes rod.end,arm.start -link_knee_type glued", "link_knee_type", "glued", "ball, rigid")
+bad(PAIR + "-link_knee_nodes rod.end,arm.start -beam_rod_end1 clamp -beam_arm_end0 clamp", "link 'knee'", "supports fix more")
+bad(PAIR + "-link_knee_nodes rod.end,arm.start -link_knee_type rigid -beam_arm_end 0.35,0.20001,0.2", "link 'knee'",
+    "rad from one line")
+bad(PAIR + "-link_knee_nodes rod.end,arm.start -beam_arm_velocity 0,0,1", "link 'knee'", "tear")
+bad(PAIR + "-link_knee_nodes rod.end,arm.start -ancf_pc_type blocktri", "ancf_pc_type blocktri", "joints")
+bad("-links knee -link_knee_nodes rod.end,rod.start", "link 'knee'", r"0\.15 m")
+bad("-links knee -beam_rod_type lumped -link_knee_nodes rod.end,rod.start", "link_knee_nodes", "'rod' is lumped", "joints")
+
 # Options that nobody knows, and values that are none.
 bad("-beam_rod_yuong 1e6", "unknown option beam_rod_yuong", "beam_rod_young")
 bad("-sph_viscosty 2", "unknown option sph_viscosty", "sph_viscosity")

@@ -76,6 +76,12 @@ typedef struct {
   PetscBool setpivot;
 } SceneWall;
 
+/* Nodes of ANCF beams held together. */
+typedef struct {
+  char name[APP_NAME_LEN], text[PETSC_MAX_PATH_LEN]; /* text: its nodes as given */
+  PetscInt type, n, *beam, *node;                    /* type: 0 ball, 1 rigid; n nodes */
+} SceneLink;
+
 /* A regular grid of points; lo = hi along an axis makes a slice or a line. */
 typedef struct {
   char name[APP_NAME_LEN];
@@ -114,6 +120,8 @@ typedef struct {
   PetscInt nlumped, njoints;
   SceneLumped *lumped; /* beams of rigid trunks; beams holds the others */
   SceneJoint *joints;
+  PetscInt nlinks;
+  SceneLink *links;
   PetscInt ngrids, nprobes;
   SceneGrid *grids;
   SceneProbe *probes;
@@ -210,6 +218,12 @@ PetscErrorCode AppBuildJoints(App *app);
 PetscErrorCode AppBuildShortRange(App *app);
 PetscErrorCode AppCheckOverlap(App *app);
 PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v[3]);
+
+/* scenelink.c: links between nodes of beams. */
+PetscErrorCode AppSceneReadLinks(AppScene *scene);
+PetscErrorCode AppSceneFreeLinks(AppScene *scene);
+PetscErrorCode AppBuildLinks(App *app);
+PetscErrorCode AppSetUpBeams(App *app);
 
 /* appfluid.c */
 PetscErrorCode AppFluidFill(App *app);

@@ -39,7 +39,7 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
   AppScene *s = &app->scene;
 
   PetscFunctionBegin;
-  if (!s->nbeams) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->nbeams && !s->nlinks) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(app->dim == 3 || rho == 0, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "buoyancy archimedes is not there for beams in a 2D scene: use resolved");
   PetscCall(AncfCreate(PETSC_COMM_SELF, &app->ancf));
@@ -51,8 +51,9 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
     PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
     AppDoing(app, "%s", "");
   }
+  PetscCall(AppBuildLinks(app));
   PetscCall(AncfSetFromOptions(app->ancf));
-  PetscCall(AncfSetUp(app->ancf));
+  PetscCall(AppSetUpBeams(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

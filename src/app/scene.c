@@ -304,6 +304,7 @@ static PetscErrorCode read_structures(AppScene *s)
   PetscCall(PetscCalloc1((size_t)(bodies.n + trunks), &s->bodies));
   PetscCall(read_bodies(s, &bodies, help));
   PetscCall(AppSceneReadJoints(s));
+  PetscCall(AppSceneReadLinks(s));
   PetscCall(AppSceneReadProbes(s));
   PetscCall(PetscFree(beams.name));
   PetscCall(PetscFree(bodies.name));
@@ -420,6 +421,7 @@ PetscErrorCode AppSceneDestroy(AppScene *s)
   PetscCall(PetscFree(s->bodies));
   PetscCall(PetscFree(s->lumped));
   PetscCall(PetscFree(s->joints));
+  PetscCall(AppSceneFreeLinks(s));
   PetscCall(PetscFree(s->grids));
   PetscCall(PetscFree(s->probes));
   PetscFunctionReturn(PETSC_SUCCESS);
