@@ -50,7 +50,8 @@ for k in (0, 3, 5):
         check(found["markers"].GetNumberOfCells() == n and found["markers"].GetCellType(0) in (1, 2), "frame %d: %d vertices" % (k, n))
         compare(found["markers"], h["markers"], ("velocity", "density", "pressure", "group"), "frame %d markers" % k)
         check(found["rod"].GetNumberOfCells() == 1 and found["rod"].GetCellType(0) == 4, "frame %d: the beam is one polyline" % k)
-        compare(found["rod"], h["beams/rod/line"], ("velocity", "stretch", "coordinate"), "frame %d beam" % k)
+        compare(found["rod"], h["beams/rod/line"], ("velocity", "stretch", "coordinate", "axial_force", "curvature", "moment"),
+                "frame %d beam" % k)
         compare(found["bodies"], h["bodies"], ("velocity", "omega"), "frame %d bodies" % k)
 print("%d checks, %d failed" % (checks, failures))
 sys.exit(1 if failures or not checks else 0)

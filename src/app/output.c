@@ -230,6 +230,24 @@ static PetscErrorCode write_nodes(App *app, PetscInt beam, int64_t g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Axial force, curvature and bending moment at n points at equal distances. */
+static PetscErrorCode write_sections(App *app, PetscInt beam, PetscInt n, int64_t h)
+{
+  const char *force = app->dim == 2 ? "N/m" : "N", *moment = app->dim == 2 ? "N" : "N m";
+  PetscReal *N, *kappa, *M;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(n, &N, 3 * (size_t)n, &kappa, 3 * (size_t)n, &M));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(AncfGetSection(app->ancf, beam, (PetscReal)i / (PetscReal)(n - 1), NULL, &N[i], kappa + 3 * i, M + 3 * i));
+  PetscCall(AppH5Real(h, &(H5Label){"axial_force", force, "elastic axial force, tension positive"}, PETSC_FALSE, n, 0, N));
+  PetscCall(
+      AppH5Real(h, &(H5Label){"curvature", "1/m", "curvature vector r' x r'' of the centre line"}, PETSC_FALSE, n, 3, kappa));
+  PetscCall(AppH5Real(h, &(H5Label){"moment", moment, "elastic bending moment"}, PETSC_FALSE, n, 3, M));
+  PetscCall(PetscFree3(N, kappa, M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode write_beam(AppOutput out, App *app, PetscInt beam, int64_t beams)
 {
   const AncfBeamSpec *spec = &app->scene.beams[beam].spec;
@@ -259,6 +277,7 @@ static PetscErrorCode write_beam(AppOutput out, App *app, PetscInt beam, int64_t
   PetscCall(AppH5Real(h, &(H5Label){"velocity", "m/s", "velocity of the centre line"}, PETSC_FALSE, n, 3, v));
   PetscCall(AppH5Real(h, &(H5Label){"stretch", "1", "length of the position gradient"}, PETSC_FALSE, n, 0, stretch));
   PetscCall(AppH5Real(h, &(H5Label){"coordinate", "m", "material coordinate along the axis"}, PETSC_FALSE, n, 0, s));
+  PetscCall(write_sections(app, beam, n, h));
   PetscCall(AppH5GroupClose(h));
   PetscCall(AppH5GroupClose(g));
   PetscCall(PetscFree2(v, s));

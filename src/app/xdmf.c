@@ -18,9 +18,8 @@ static const XdmfField marker_fields[FIELD_COUNT] = {
     {"group", "Scalar", "Int", 4, 1},      {"acceleration", "Vector", "Float", 4, 3},
 };
 static const XdmfField beam_fields[] = {
-    {"velocity", "Vector", "Float", 8, 3},
-    {"stretch", "Scalar", "Float", 8, 1},
-    {"coordinate", "Scalar", "Float", 8, 1},
+    {"velocity", "Vector", "Float", 8, 3},    {"stretch", "Scalar", "Float", 8, 1},   {"coordinate", "Scalar", "Float", 8, 1},
+    {"axial_force", "Scalar", "Float", 8, 1}, {"curvature", "Vector", "Float", 8, 3}, {"moment", "Vector", "Float", 8, 3},
 };
 static const XdmfField body_fields[] = {
     {"velocity", "Vector", "Float", 8, 3},
@@ -111,7 +110,8 @@ PetscErrorCode AppXdmfWrite(const char dir[], const XdmfSeries *series)
            app->scene.field);
     for (PetscInt b = 0; b < app->scene.nbeams; b++) {
       snprintf(group, sizeof(group), "beams/%s/line", app->scene.beams[b].name);
-      grid(f, frame, group, app->scene.beams[b].name, PETSC_TRUE, series->points[b], 3, beam_fields, NULL);
+      grid(f, frame, group, app->scene.beams[b].name, PETSC_TRUE, series->points[b], sizeof(beam_fields) / sizeof(beam_fields[0]),
+           beam_fields, NULL);
     }
     if (app->rigid) grid(f, frame, "bodies", "bodies", PETSC_FALSE, app->scene.nbodies, 2, body_fields, NULL);
     for (PetscInt i = 0; i < app->scene.ngrids; i++) regular(f, frame, &app->scene.grids[i]);
