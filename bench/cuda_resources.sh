@@ -11,7 +11,7 @@ echo
 echo "| architecture | file | kernel | registers | stack (B) | spill stores (B) | spill loads (B) |"
 echo "| --- | --- | --- | --- | --- | --- | --- |"
 for arch in "${@:-sm_75}"; do
-  for file in sph_cuda.cu sph_cudabuild.cu sph_cudastep.cu sph_cudapairs_single.cu sph_cudapairs_double.cu; do
+  for file in sph_cuda.cu sph_cudalink.cu sph_cudabuild.cu sph_cudastep.cu sph_cudapairs_single.cu sph_cudapairs_double.cu; do
     flags=
     if [ "$file" = sph_cudapairs_single.cu ]; then flags="-prec-div=false -prec-sqrt=false"; fi # as src/sph_cuda/cuda.cmake
     # shellcheck disable=SC2086

@@ -1,9 +1,11 @@
 # One conformance suite for every backend of the fluid; the CUDA backend also without a device, through cuda_shim (host compiler,
 # AddressSanitizer). `ctest -L gpu` is everything that needs a device.
 frond_test(test_sph_conformance SOURCES test_sph_conformance.c LABELS unit)
+frond_test(test_couple_link SOURCES test_couple_link.c LABELS unit)
 if(FROND_HAVE_CUDA)
   add_test(NAME test_sph_conformance_cuda COMMAND test_sph_conformance -type cuda)
-  set_tests_properties(test_sph_conformance_cuda PROPERTIES LABELS gpu SKIP_RETURN_CODE 77 TIMEOUT 300)
+  add_test(NAME test_couple_link_cuda COMMAND test_couple_link -type cuda)
+  set_tests_properties(test_sph_conformance_cuda test_couple_link_cuda PROPERTIES LABELS gpu SKIP_RETURN_CODE 77 TIMEOUT 300)
 endif()
 
 include(CheckLanguage)
@@ -33,7 +35,7 @@ if(CMAKE_CXX_COMPILER)
   target_link_libraries(sph_shim PUBLIC frond_flags OpenMP::OpenMP_C)
   target_link_options(sph_shim PUBLIC -fsanitize=address)
 
-  foreach(shimtest test_cuda_device test_sph_conformance)
+  foreach(shimtest test_cuda_device test_sph_conformance test_couple_link)
     add_executable(${shimtest}_shim ${shimtest}.c)
     target_include_directories(${shimtest}_shim PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
     target_link_libraries(${shimtest}_shim PRIVATE sph_shim)
@@ -41,6 +43,18 @@ if(CMAKE_CXX_COMPILER)
     add_test(NAME ${shimtest}_shim COMMAND ${shimtest}_shim -type cuda -no_signal_handler)
     set_tests_properties(${shimtest}_shim PROPERTIES LABELS unit TIMEOUT 300 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE;ASAN_OPTIONS=detect_leaks=0")
   endforeach()
+  # The coupled system on top of it; its own parts as in the library.
+  target_compile_definitions(test_couple_link_shim PRIVATE CUDA_SHIM)
+  target_link_libraries(test_couple_link_shim PRIVATE frond_couple frond_ancf frond_rigid)
+  # The bench program of the device, small: that it runs and prints its table.
+  add_executable(bench_cuda_shim ${PROJECT_SOURCE_DIR}/bench/bench_cuda.c)
+  target_compile_definitions(bench_cuda_shim PRIVATE CUDA_SHIM)
+  target_link_libraries(bench_cuda_shim PRIVATE sph_shim)
+  set_target_properties(bench_cuda_shim PROPERTIES LINKER_LANGUAGE CXX)
+  add_test(NAME bench_cuda_shim COMMAND bench_cuda_shim -markers 2000 -steps 2 -no_signal_handler)
+  set_tests_properties(bench_cuda_shim PROPERTIES LABELS unit TIMEOUT 120 ENVIRONMENT "OMP_NUM_THREADS=1;ASAN_OPTIONS=detect_leaks=0"
+    PASS_REGULAR_EXPRESSION "\ncuda .*ms per step.* Build [0-9.]+ Auxiliary [0-9.]+ Rates [0-9.]+ Integrate [0-9.]+ Reinit [0-9.]+"
+    FAIL_REGULAR_EXPRESSION "ERROR")
   add_executable(test_cuda_shim test_cuda_shim.cpp cuda_shim/cuda_shim.cpp)
   target_compile_features(test_cuda_shim PRIVATE cxx_std_17)
   target_compile_options(test_cuda_shim PRIVATE ${shim_flags} -Wall -Wextra)

@@ -6,6 +6,7 @@
 
 #include "sphfill.h"
 #include "sphimpl.h"
+#include "sphlink.h"
 
 typedef struct {
   const char *name;
@@ -153,6 +154,85 @@ static inline PetscErrorCode SceneCreate(const Scene *c, const char *type, SphPr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How group 1 may be linked (sphlink.h): not; to a rigid body; to four nodes, affinely. */
+typedef enum { SCENE_FREE, SCENE_BODY, SCENE_NODES } SceneLink;
+
+/* Its markers in the body's frame, n x 3. */
+static inline PetscErrorCode SceneOffsets(const Scene *c, PetscInt *n, PetscReal **o)
+{
+  PetscReal body[4];
+
+  PetscFunctionBegin;
+  SceneBody(c, body);
+  PetscCall(SceneBodyMarkers(c, body, n, o));
+  for (PetscInt i = 0; i < 3 * *n; i++) (*o)[i] -= body[i % 3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes: the centre, and one at a distance of 1 along each axis. */
+static inline PetscErrorCode SceneSetLink(Sph sph, const Scene *c, SceneLink link)
+{
+  PetscReal *o, *shape, *zero;
+  PetscInt n, *rowstart, *node, *section;
+  SphLinkSpec spec = {0};
+
+  PetscFunctionBegin;
+  if (link == SCENE_FREE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneOffsets(c, &n, &o));
+  PetscCall(PetscMalloc4(n + 1, &rowstart, 4 * n, &node, n, &section, 4 * n, &shape));
+  PetscCall(PetscCalloc1(3 * n, &zero));
+  rowstart[0] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    rowstart[i + 1] = 4 * (i + 1);
+    section[i] = i;
+    for (int j = 0; j < 4; j++) node[4 * i + j] = j;
+    shape[4 * i] = 1.0 - o[3 * i] - o[3 * i + 1] - o[3 * i + 2];
+    for (int j = 0; j < 3; j++) shape[4 * i + 1 + j] = o[3 * i + j];
+  }
+  spec.nsections = link == SCENE_BODY ? 1 : n;
+  spec.offset = link == SCENE_BODY ? o : zero;
+  if (link == SCENE_NODES) {
+    spec.nnodes = 4;
+    spec.rowstart = rowstart;
+    spec.node = node;
+    spec.shape = shape;
+    spec.section = section;
+  }
+  PetscCall(SphSetGroupLink(sph, 1, &spec));
+  PetscCall(PetscFree4(rowstart, node, section, shape));
+  PetscCall(PetscFree(zero));
+  PetscCall(PetscFree(o));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The motion of SceneMoveBody() as a state of the link. */
+static inline PetscErrorCode SceneSetState(Sph sph, const Scene *c, double t)
+{
+  PetscReal body[4], state[36] = {0.0};
+  PetscInt nstate;
+
+  PetscFunctionBegin;
+  SceneBody(c, body);
+  PetscCall(SphGetGroupLinkSize(sph, 1, &nstate, NULL));
+  for (int k = 0; k < 3; k++) {
+    const double a = k < c->dim ? scene_acceleration[k] : 0.0, v = (k < c->dim ? scene_velocity[k] : 0.0) + a * t,
+                 x = body[k] + (v - 0.5 * a * t) * t;
+    if (nstate == 24) {
+      state[k] = x;
+      state[3 + k] = v;
+      state[6 + k] = a;
+      state[15 + 4 * k] = 1.0;
+    } else
+      for (int j = 0; j < 4; j++) {
+        state[3 * j + k] = x + (j == k + 1 ? 1.0 : 0.0);
+        state[12 + 3 * j + k] = v;
+        state[24 + 3 * j + k] = a;
+      }
+  }
+  PetscCall(SphSetGroupState(sph, 1, state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Motion of group 1 at time t: constant acceleration. Nothing is read back, as in a coupled run. */
 static inline PetscErrorCode SceneMoveBody(Sph sph, const Scene *c, double t)
 {
@@ -160,6 +240,10 @@ static inline PetscErrorCode SceneMoveBody(Sph sph, const Scene *c, double t)
   PetscInt n;
 
   PetscFunctionBegin;
+  if (SphIsLinked(sph, 1)) {
+    PetscCall(SceneSetState(sph, c, t));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   SceneBody(c, body);
   PetscCall(SceneBodyMarkers(c, body, &n, &x));
   PetscCall(PetscMalloc2(3 * n, &v, 3 * n, &a));

@@ -88,7 +88,23 @@ static PetscErrorCode Dump(Sph sph, double **out, PetscInt *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TestOrder(const Scene *scene)
+/* A step in which motion is set again while the device may still be reading what was set before. */
+static PetscErrorCode Hurry(Sph sph, const Scene *scene)
+{
+  PetscReal t;
+
+  PetscFunctionBegin;
+  PetscCall(SphGetTime(sph, &t, NULL));
+  PetscCall(SphStepBegin(sph, 2e-4));
+  PetscCall(SceneMoveBody(sph, scene, t + 1e-4));
+  PetscCall(SphStepEvaluate(sph));
+  PetscCall(SceneMoveBody(sph, scene, t + 2e-4));
+  PetscCall(SphStepEnd(sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* link: as group 1 is linked */
+static PetscErrorCode TestOrder(const Scene *scene, SceneLink link)
 {
   double *first = NULL, *now;
   PetscInt n;
@@ -100,8 +116,10 @@ static PetscErrorCode TestOrder(const Scene *scene)
       cudaShimSetOrder(order);
       cudaShimSetEager(eager);
       PetscCall(SceneCreate(scene, SPHCUDA, SPH_PRECISION_SINGLE, &sph));
+      PetscCall(SceneSetLink(sph, scene, link));
       PetscCall(SphSetUp(sph));
       for (int step = 0; step < 12; step++) PetscCall(SceneStep(sph, scene, 2e-4));
+      if (scene->integrator != SPH_INTEGRATOR_VERLET) PetscCall(Hurry(sph, scene));
       PetscCall(Dump(sph, &now, &n));
       if (!first) {
         first = now;
@@ -224,13 +242,14 @@ static PetscErrorCode TestAbsent(void)
 }
 
 /* A run in which call number `fail` and all later ones fail; true when it was reached. */
-static PetscErrorCode RunFailing(long fail, int error, PetscErrorCode *err)
+static PetscErrorCode RunFailing(SceneLink link, long fail, int error, PetscErrorCode *err)
 {
   Sph sph;
-  PetscReal dt;
+  PetscReal dt, load[12];
 
   PetscFunctionBegin;
   PetscCall(SceneCreate(&small, SPHCUDA, SPH_PRECISION_SINGLE, &sph));
+  PetscCall(SceneSetLink(sph, &small, link));
   message[0] = 0;
   PetscCall(PetscPushErrorHandler(Keep, NULL));
   cudaShimFailCall(fail, error);
@@ -238,6 +257,7 @@ static PetscErrorCode RunFailing(long fail, int error, PetscErrorCode *err)
   for (int step = 0; step < 2 && !*err; step++) {
     *err = SphComputeTimeStep(sph, &dt);
     if (!*err) *err = SceneStep(sph, &small, 1e-3); /* far enough to sort again */
+    if (!*err && link != SCENE_FREE) *err = SphGetGroupLoad(sph, 1, load, NULL);
   }
   if (!*err)
     *err = SphSetBoundaryMotion(sph, 5, NULL, NULL, NULL) ? PETSC_SUCCESS : PETSC_ERR_PLIB; /* a refused call changes nothing */
@@ -247,7 +267,7 @@ static PetscErrorCode RunFailing(long fail, int error, PetscErrorCode *err)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TestEveryFailure(void)
+static PetscErrorCode TestEveryFailure(SceneLink link)
 {
   enum { LAUNCH_FAILURE = 719, ECC_UNCORRECTABLE = 214 };
   PetscErrorCode err = PETSC_ERR_LIB;
@@ -255,7 +275,7 @@ static PetscErrorCode TestEveryFailure(void)
 
   PetscFunctionBegin;
   for (k = 0; err; k++) { /* until the run is over before call k */
-    PetscCall(RunFailing(k, LAUNCH_FAILURE, &err));
+    PetscCall(RunFailing(link, k, LAUNCH_FAILURE, &err));
     if (!err) break;
     wrong += !(k == 0 ? strstr(message, "no CUDA device") : strstr(message, "cudaErrorLaunchFailure")) ||
              !(k == 0 || strchr(message, '('));
@@ -264,7 +284,7 @@ static PetscErrorCode TestEveryFailure(void)
   TEST(k > 100 && k < 2000 && wrong == 0, "%ld of %ld failing calls gave no clear error (the last: %s)", wrong, k, message);
   TEST(leaks == 0, "%ld objects were not freed after failures", leaks);
   printf("%ld CUDA calls failed one after another\n", k);
-  PetscCall(RunFailing(100, ECC_UNCORRECTABLE, &err));
+  PetscCall(RunFailing(link, 100, ECC_UNCORRECTABLE, &err));
   TEST(err && strstr(message, "absent or lost"), "a lost device: %s", message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -295,9 +315,11 @@ static PetscErrorCode TestAddressSpaces(void)
 int main(int argc, char **argv)
 {
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(TestOrder(&small));
-  PetscCall(TestOrder(&cube));
-  PetscCall(TestOrder(&leap));
+  PetscCall(TestOrder(&small, SCENE_FREE));
+  PetscCall(TestOrder(&cube, SCENE_FREE));
+  PetscCall(TestOrder(&leap, SCENE_FREE));
+  PetscCall(TestOrder(&small, SCENE_NODES));
+  PetscCall(TestOrder(&leap, SCENE_BODY));
   PetscCall(TestAgainstCpu(&small));
   PetscCall(TestAgainstCpu(&cube));
   PetscCall(TestAgainstCpu(&leap));
@@ -305,7 +327,8 @@ int main(int argc, char **argv)
   PetscCall(TestMemory());
   PetscCall(TestAbsent());
   PetscCall(TestAddressSpaces());
-  PetscCall(TestEveryFailure());
+  PetscCall(TestEveryFailure(SCENE_FREE));
+  PetscCall(TestEveryFailure(SCENE_NODES));
   PetscCall(PetscFinalize());
   return test_report();
 }

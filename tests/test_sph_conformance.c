@@ -13,6 +13,7 @@
   |n/s| ds)/s. Nothing is fitted to results.
 */
 #include "sph_conformance.h"
+#include "sph_link.h"
 #include "testing.h"
 #include <string.h>
 
@@ -846,9 +847,11 @@ static PetscErrorCode Run(const char *type)
       PetscCall(CheckSums(sph, &scenes[k]));
       PetscCall(SphDestroy(&sph));
       PetscCall(CheckRoundTrip(&scenes[k], type, (SphPrecision)precision));
-      if (precision == SPH_PRECISION_DOUBLE)
+      if (precision == SPH_PRECISION_DOUBLE) {
         PetscCall(CheckStages(&scenes[k], type));
-      else
+        PetscCall(SceneCheckLink(&scenes[k], type, SCENE_BODY, "body"));
+        PetscCall(SceneCheckLink(&scenes[k], type, SCENE_NODES, "nodes"));
+      } else
         PetscCall(CheckState(&scenes[k], type));
     }
   PetscCall(CheckTrouble(&scenes[0], type));

@@ -35,6 +35,7 @@ PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple)
   PetscCall(PetscNew(&c));
   c->comm = comm;
   c->dtmax = PETSC_DECIDE;
+  c->transfer = COUPLE_TRANSFER_AUTO;
   c->maxiterations = 1;
   c->tolerance = 1e-4;
   c->relaxation = 0.5;
@@ -82,6 +83,7 @@ PetscErrorCode CoupleSetFromOptions(Couple c)
 {
   PetscReal r = c->dtmax, tolerance = c->tolerance, relaxation = c->relaxation;
   PetscInt n = c->maxiterations;
+  PetscEnum transfer = (PetscEnum)c->transfer;
   PetscBool set;
 
   PetscFunctionBegin;
@@ -96,6 +98,10 @@ PetscErrorCode CoupleSetFromOptions(Couple c)
   PetscCall(PetscOptionsReal("-couple_relaxation", "First relaxation factor of each step; Aitken's rule adapts it",
                              "CoupleSetIterations", relaxation, &relaxation, NULL));
   PetscCall(CoupleSetIterations(c, n, tolerance, relaxation));
+  PetscCall(PetscOptionsEnum("-couple_transfer",
+                             "What passes between fluid and structures: markers, generalised (states and forces), auto",
+                             "CoupleSetTransfer", CoupleTransferTypes, transfer, &transfer, &set));
+  if (set) PetscCall(CoupleSetTransfer(c, (CoupleTransferType)transfer));
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,6 +112,11 @@ PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
   PetscCall(PetscLogEventBegin(COUPLE_Kinematics, 0, 0, 0, 0));
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
+    if (s->linked) {
+      PetscCall((*s->surface->ops.linkstate)(s->surface, ahead, s->state));
+      PetscCall(SphSetGroupState(c->sph, s->group, s->state));
+      continue;
+    }
     PetscCall((*s->surface->ops.kinematics)(s->surface, ahead, s->x, s->v, s->a));
     PetscCall(SphSetBoundaryMotion(c->sph, s->group, s->x, s->v, s->a));
   }
@@ -126,6 +137,7 @@ PetscErrorCode CoupleSetUp(Couple c)
     PetscCall((*s->surface->ops.kinematics)(s->surface, 0.0, s->x, s->v, s->a));
     PetscCall(SphAddBoundary(c->sph, s->n, s->x, s->v, volume, depth, &s->group));
   }
+  PetscCall(CoupleLinkSetUp(c));
   PetscCall(SphSetUp(c->sph));
   PetscCall(CoupleMoveMarkers(c, 0.0));
   c->setup = PETSC_TRUE;
@@ -136,10 +148,11 @@ PetscErrorCode CoupleSetUp(Couple c)
 PetscErrorCode CoupleView(Couple c, PetscViewer viewer)
 {
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "Coupling: %" PetscInt_FMT " surfaces, couple_dt_max %g s, couple_iterations %" PetscInt_FMT
-                                   ", couple_tolerance %g, couple_relaxation %g\n",
-                                   c->n, (double)c->dtmax, c->maxiterations, (double)c->tolerance, (double)c->relaxation));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "Coupling: %" PetscInt_FMT " surfaces, couple_transfer %s, couple_dt_max %g s, couple_iterations %" PetscInt_FMT
+      ", couple_tolerance %g, couple_relaxation %g\n",
+      c->n, CoupleTransferTypes[c->transfer], (double)c->dtmax, c->maxiterations, (double)c->tolerance, (double)c->relaxation));
   for (PetscInt i = 0; i < c->n; i++)
     if (c->slot[i].surface->ops.view) PetscCall((*c->slot[i].surface->ops.view)(c->slot[i].surface, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,6 +164,7 @@ PetscErrorCode CoupleDestroy(Couple *couple)
   if (!*couple) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < (*couple)->n; i++) {
     CoupleSlot *s = &(*couple)->slot[i];
+    PetscCall(CoupleLinkDestroy(s));
     if (s->x) PetscCall(PetscFree4(s->x, s->v, s->a, s->f));
     PetscCall(CoupleSurfaceDestroy(&s->surface));
   }
@@ -182,8 +196,17 @@ static PetscErrorCode Transfer(Couple c)
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
     CoupleAudit audit = {0};
-    MarkerTotals(s, &audit);
-    PetscCall((*s->surface->ops.applyforces)(s->surface, s->f, &audit));
+    if (s->linked) {
+      for (int k = 0; k < 3; k++) {
+        audit.force[k] = s->totals.force[k];
+        audit.moment[k] = s->totals.moment[k];
+      }
+      audit.power = s->totals.power;
+      PetscCall((*s->surface->ops.applyloads)(s->surface, s->load, &s->totals, &audit));
+    } else {
+      MarkerTotals(s, &audit);
+      PetscCall((*s->surface->ops.applyforces)(s->surface, s->f, &audit));
+    }
     s->audit = audit;
   }
   PetscCall(PetscLogEventEnd(COUPLE_Transfer, 0, 0, 0, 0));
@@ -196,7 +219,9 @@ PetscErrorCode CoupleApplyForces(Couple c, const PetscReal *f)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
-    if (f && !s->surface->held) {
+    if (s->linked)
+      PetscCall(SphGetGroupLoad(c->sph, s->group, s->load, &s->totals));
+    else if (f && !s->surface->held) {
       PetscCall(PetscArraycpy(s->f, f, 3 * s->n));
       f += 3 * s->n;
     } else

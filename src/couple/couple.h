@@ -12,6 +12,7 @@
 #include "frondsys.h"
 #include "rigid.h"
 #include "sph.h"
+#include "sphlink.h"
 
 /* A fluid coupled to structures. */
 typedef struct _p_Couple *Couple;
@@ -55,6 +56,15 @@ typedef struct {
   PetscErrorCode (*statesize)(CoupleSurface, PetscInt *n);
   PetscErrorCode (*save)(CoupleSurface, PetscReal *state);       /* optional */
   PetscErrorCode (*load)(CoupleSurface, const PetscReal *state); /* optional */
+  /*
+    Optional, all three or none: how the markers hang on the structure's coordinates (borrowed), for fluids that move them and sum
+    their forces by themselves; then linkstate stands in for kinematics (state: of SphSetGroupState()) and applyloads for
+    applyforces (load, totals: of SphGetGroupLoad()).
+  */
+  PetscErrorCode (*getlink)(CoupleSurface, SphLinkSpec *spec);
+  PetscErrorCode (*linkstate)(CoupleSurface, PetscReal dt, PetscReal *state); /* optional */
+  /* optional */
+  PetscErrorCode (*applyloads)(CoupleSurface, const PetscReal *load, const SphLinkTotals *totals, CoupleAudit *audit);
 } CoupleSurfaceOps;
 
 /*
@@ -119,6 +129,16 @@ FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax)
   tolerance: of the forces, relative (-), > 0. relaxation: the first factor of each step (-), in (0, 1].
 */
 FROND_EXTERN PetscErrorCode CoupleSetIterations(Couple couple, PetscInt n, PetscReal tolerance, PetscReal relaxation);
+/*
+  What passes between coupling and fluid. Markers: the state of every marker and the force on it. Generalised: the states of the
+  structures and generalised forces, for surfaces that can (CoupleSurfaceOps.getlink); same physics, equal to round-off; not with
+  iterations. Auto (default): generalised where markers live on a device.
+*/
+typedef enum { COUPLE_TRANSFER_AUTO, COUPLE_TRANSFER_MARKERS, COUPLE_TRANSFER_GENERALISED } CoupleTransferType;
+/* Names of CoupleTransferType. */
+FROND_EXTERN const char *const CoupleTransferTypes[];
+/* Before CoupleSetUp(). transfer: what passes between coupling and fluid. */
+FROND_EXTERN PetscErrorCode CoupleSetTransfer(Couple couple, CoupleTransferType transfer);
 /* Each output may be NULL. iterations: made since set-up. unconverged: steps that missed the tolerance. */
 FROND_EXTERN PetscErrorCode CoupleGetIterations(Couple couple, PetscInt *iterations, PetscInt *unconverged);
 /* Read -couple_.... */

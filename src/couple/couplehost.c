@@ -2,13 +2,11 @@
   couplehost.c - structures given by nodes and shape functions: motion of BCE markers on them, and the transposed transfer of
   forces.
 
-  A section at r = sum S_j q_j with the tangent t = r_s/|r_s|, r_s = sum S'_j q_j, turns with w = t x r_s'/|r_s|: the turning of
-  the tangent without spin about it, which the nodes have no coordinate for. A marker at offset o moves with r' + w x o. A force F
-  on it does the virtual work F . dr + (o x F) . (t x dr_s)/|r_s|, hence Q_j = S_j F + S'_j ((o x F) x t)/|r_s|. The axial part of
-  o x F does no work on any node; the audit reports it as twist. Beams of ANCF are a case of this (couplebeam.c).
+  The equations are those of sectionmath.h. Beams of ANCF are a case of this (couplebeam.c).
 */
 #include "couplehost.h"
 #include "coupleimpl.h"
+#include "sectionmath.h"
 
 typedef struct {
   CoupleHostOps ops;
@@ -21,14 +19,12 @@ typedef struct {
   PetscReal *d1; /* per section with slopes: transported unit normal at the structure's own time, 3 */
   PetscReal *Q;  /* kept here when the host has no array for it */
   /* of the last kinematics call */
-  PetscReal *q, *qdot;        /* nodes, nnodes x 3 */
-  PetscReal *r, *t, *len, *o; /* per section: point, tangent (3), |r_s|; per marker: offset (3) */
+  PetscReal *q, *qdot; /* nodes, nnodes x 3 */
+  FrondSection *frame; /* per section */
+  PetscReal *o;        /* per marker: offset (3) */
+  PetscReal *offset3;  /* the same in the frame, for a link; NULL without */
+  int *inode;          /* node, as int */
 } Host;
-
-/* Motion of one section: velocity and acceleration of its point, w and dw/dt. */
-typedef struct {
-  PetscReal v[3], a[3], w[3], alpha[3];
-} SectionMotion;
 
 /* The nodes extrapolated by dt: q, q', and (the host's array) q''. */
 static PetscErrorCode Extrapolate(Host *h, PetscReal dt, const PetscReal **qddot)
@@ -45,70 +41,12 @@ static PetscErrorCode Extrapolate(Host *h, PetscReal dt, const PetscReal **qddot
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r = sum over the entries of section s of weight times node vector. */
-static void Interpolate(const Host *h, PetscInt s, const PetscReal *weight, const PetscReal *q, PetscReal r[3])
+static void MoveSection(Host *h, PetscInt s, const PetscReal *qddot)
 {
-  r[0] = r[1] = r[2] = 0.0;
-  for (PetscInt e = h->rowstart[s]; e < h->rowstart[s + 1]; e++)
-    for (int k = 0; k < 3; k++) r[k] += weight[e] * q[3 * h->node[e] + k];
-}
+  const PetscInt e = h->rowstart[s];
 
-/* Transport of the normal d1 to tangent t: remove its component along t. In 2D it is the in-plane normal. */
-static void Transport(const Host *h, const PetscReal t[3], PetscReal d1[3])
-{
-  if (h->dim == 2) {
-    d1[0] = -t[1];
-    d1[1] = t[0];
-    d1[2] = 0.0;
-    return;
-  }
-  const PetscReal c = CoupleDot(d1, t);
-  PetscReal n;
-  for (int k = 0; k < 3; k++) d1[k] -= c * t[k];
-  n = PetscSqrtReal(CoupleDot(d1, d1));
-  for (int k = 0; k < 3; k++) d1[k] /= n;
-}
-
-static void MoveSection(Host *h, PetscInt s, const PetscReal *qddot, SectionMotion *m)
-{
-  PetscReal rs[3], rsd[3], rsdd[3], *t = h->t + 3 * s, td[3], c1[3], c2[3], tr;
-
-  Interpolate(h, s, h->shape, h->q, h->r + 3 * s);
-  Interpolate(h, s, h->shape, h->qdot, m->v);
-  Interpolate(h, s, h->shape, qddot, m->a);
-  if (!h->slope) return;
-  Interpolate(h, s, h->slope, h->q, rs);
-  Interpolate(h, s, h->slope, h->qdot, rsd);
-  Interpolate(h, s, h->slope, qddot, rsdd);
-  h->len[s] = PetscSqrtReal(CoupleDot(rs, rs));
-  for (int k = 0; k < 3; k++) t[k] = rs[k] / h->len[s];
-  CoupleCross(t, rsd, m->w);
-  tr = CoupleDot(t, rsd) / h->len[s];
-  for (int k = 0; k < 3; k++) {
-    m->w[k] /= h->len[s];
-    td[k] = rsd[k] / h->len[s] - t[k] * tr;
-  }
-  CoupleCross(td, rsd, c1);
-  CoupleCross(t, rsdd, c2);
-  for (int k = 0; k < 3; k++) m->alpha[k] = (c1[k] + c2[k]) / h->len[s] - m->w[k] * tr;
-}
-
-/* A marker of section s, at offset o from its point. */
-static void MoveMarker(const Host *h, PetscInt i, const SectionMotion *m, PetscReal x[3], PetscReal v[3], PetscReal a[3])
-{
-  const PetscReal *r = h->r + 3 * h->section[i], *o = h->o + 3 * i;
-  PetscReal wo[3] = {0, 0, 0}, wwo[3] = {0, 0, 0}, ao[3] = {0, 0, 0};
-
-  if (h->slope) {
-    CoupleCross(m->w, o, wo);
-    CoupleCross(m->w, wo, wwo);
-    CoupleCross(m->alpha, o, ao);
-  }
-  for (int k = 0; k < 3; k++) {
-    x[k] = r[k] + o[k];
-    v[k] = m->v[k] + wo[k];
-    a[k] = m->a[k] + ao[k] + wwo[k];
-  }
+  section_from_nodes((int)h->dim, (int)(h->rowstart[s + 1] - e), h->inode + e, h->shape + e, h->slope ? h->slope + e : NULL, h->q,
+                     h->qdot, qddot, h->d1 + 3 * s, &h->frame[s]);
 }
 
 static PetscErrorCode Kinematics_Host(CoupleSurface surface, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
@@ -120,17 +58,11 @@ static PetscErrorCode Kinematics_Host(CoupleSurface surface, PetscReal dt, Petsc
   PetscFunctionBegin;
   PetscCall(Extrapolate(h, dt, &qddot));
   for (PetscInt s = 0; s < h->nsections; s++) {
-    SectionMotion m;
-    PetscReal d1[3] = {0, 0, 0}, d2[3] = {0, 0, 0};
-    MoveSection(h, s, qddot, &m);
-    if (h->slope) {
-      for (int k = 0; k < 3; k++) d1[k] = h->d1[3 * s + k];
-      Transport(h, h->t + 3 * s, d1);
-      CoupleCross(h->t + 3 * s, d1, d2);
-    }
+    MoveSection(h, s, qddot);
     for (; i < h->n && h->section[i] == s; i++) {
-      for (int k = 0; k < 3; k++) h->o[3 * i + k] = h->offset[2 * i] * d1[k] + h->offset[2 * i + 1] * d2[k];
-      MoveMarker(h, i, &m, x + 3 * i, v + 3 * i, a + 3 * i);
+      const PetscReal c[3] = {h->offset[2 * i], h->offset[2 * i + 1], 0.0};
+      section_offset(&h->frame[s], c, h->o + 3 * i);
+      section_marker(&h->frame[s], h->o + 3 * i, x + 3 * i, v + 3 * i, a + 3 * i);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -168,20 +100,6 @@ static PetscErrorCode ZeroLoads_Host(CoupleSurface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Force F and moment M about its point of section s onto the nodes. */
-static void Project(const Host *h, PetscInt s, const PetscReal F[3], const PetscReal M[3], PetscReal *Q)
-{
-  PetscReal g[3];
-
-  if (h->slope) CoupleCross(M, h->t + 3 * s, g);
-  for (PetscInt e = h->rowstart[s]; e < h->rowstart[s + 1]; e++)
-    for (int k = 0; k < 3; k++) {
-      PetscReal *q = Q + 3 * h->node[e] + k;
-      *q += h->shape[e] * F[k];
-      if (h->slope) *q += h->slope[e] * g[k] / h->len[s];
-    }
-}
-
 /* What the generalised forces added amount to: force, moment about the origin, power; subtracted from the marker totals. */
 static void Audit(const Host *h, const PetscReal *Q, const PetscReal axial[3], CoupleAudit *audit)
 {
@@ -203,30 +121,12 @@ static void Audit(const Host *h, const PetscReal *Q, const PetscReal axial[3], C
   audit->power_lost = audit->power - power;
 }
 
-static PetscErrorCode ApplyForces_Host(CoupleSurface surface, const PetscReal *f, CoupleAudit *audit)
+/* The forces in h->Q, to the host; axial: the torque that they leave out. */
+static PetscErrorCode GiveLoads(Host *h, const PetscReal axial[3], CoupleAudit *audit)
 {
-  Host *h = (Host *)surface->ctx;
-  PetscReal *Q, axial[3] = {0, 0, 0};
-  PetscInt i = 0;
+  PetscReal *Q;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(h->Q, 3 * h->nnodes));
-  for (PetscInt s = 0; s < h->nsections; s++) {
-    PetscReal F[3] = {0, 0, 0}, M[3] = {0, 0, 0}, twist;
-    for (; i < h->n && h->section[i] == s; i++) {
-      PetscReal c[3];
-      CoupleCross(h->o + 3 * i, f + 3 * i, c);
-      for (int k = 0; k < 3; k++) {
-        F[k] += f[3 * i + k];
-        M[k] += c[k];
-      }
-    }
-    Project(h, s, F, M, h->Q);
-    if (!h->slope) continue;
-    twist = CoupleDot(M, h->t + 3 * s);
-    audit->twist += twist;
-    for (int k = 0; k < 3; k++) axial[k] += twist * h->t[3 * s + k];
-  }
   Audit(h, h->Q, axial, audit);
   PetscCall(GetLoads(h, &Q));
   if (Q != h->Q)
@@ -234,18 +134,79 @@ static PetscErrorCode ApplyForces_Host(CoupleSurface surface, const PetscReal *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ApplyForces_Host(CoupleSurface surface, const PetscReal *f, CoupleAudit *audit)
+{
+  Host *h = (Host *)surface->ctx;
+  PetscReal totals[SECTION_TOTALS] = {0.0};
+  PetscInt i = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(h->Q, 3 * h->nnodes));
+  for (PetscInt s = 0; s < h->nsections; s++) {
+    PetscReal sums[SECTION_SUMS] = {0.0};
+    for (; i < h->n && h->section[i] == s; i++) section_add_force(h->o + 3 * i, f + 3 * i, sums);
+    for (PetscInt e = h->rowstart[s]; e < h->rowstart[s + 1]; e++)
+      section_add_node(&h->frame[s], h->shape[e], h->slope ? h->slope[e] : 0.0, sums, sums + 3, h->Q + 3 * h->node[e]);
+    section_add_totals(&h->frame[s], sums, totals);
+  }
+  audit->twist += totals[7];
+  PetscCall(GiveLoads(h, totals + 8, audit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How the markers hang on the nodes, for fluids that move them by themselves. */
+static PetscErrorCode GetLink_Host(CoupleSurface surface, SphLinkSpec *spec)
+{
+  Host *h = (Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  if (!h->offset3) {
+    PetscCall(PetscCalloc1(3 * h->n, &h->offset3));
+    for (PetscInt i = 0; i < h->n; i++)
+      for (int k = 0; k < 2; k++) h->offset3[3 * i + k] = h->offset[2 * i + k];
+  }
+  *spec = (SphLinkSpec){h->nnodes, h->nsections, h->rowstart, h->node, h->shape, h->slope, h->section, h->offset3};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LinkState_Host(CoupleSurface surface, PetscReal dt, PetscReal *state)
+{
+  Host *h = (Host *)surface->ctx;
+  const PetscInt n = 3 * h->nnodes;
+  const PetscReal *qddot;
+
+  PetscFunctionBegin;
+  PetscCall(Extrapolate(h, dt, &qddot));
+  PetscCall(PetscArraycpy(state, h->q, n));
+  PetscCall(PetscArraycpy(state + n, h->qdot, n));
+  PetscCall(PetscArraycpy(state + 2 * n, qddot, n));
+  if (h->slope) PetscCall(PetscArraycpy(state + 3 * n, h->d1, 3 * h->nsections));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyLoads_Host(CoupleSurface surface, const PetscReal *load, const SphLinkTotals *totals,
+                                      CoupleAudit *audit)
+{
+  Host *h = (Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(h->Q, load, 3 * h->nnodes));
+  audit->twist += totals->twist;
+  PetscCall(GiveLoads(h, totals->axial, audit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The normals of the sections carried along to the structure's present state. */
 static PetscErrorCode CarryNormals(Host *h)
 {
   const PetscReal *qddot;
-  SectionMotion m;
 
   PetscFunctionBegin;
   if (!h->slope) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Extrapolate(h, 0.0, &qddot));
   for (PetscInt s = 0; s < h->nsections; s++) {
-    MoveSection(h, s, qddot, &m);
-    Transport(h, h->t + 3 * s, h->d1 + 3 * s);
+    MoveSection(h, s, qddot);
+    PetscCall(PetscArraycpy(h->d1 + 3 * s, h->frame[s].e1, 3));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -335,7 +296,8 @@ static PetscErrorCode Destroy_Host(CoupleSurface surface)
   PetscCall(PetscFree(h->slope));
   PetscCall(PetscFree4(h->offset, h->x0, h->volume, h->depth));
   PetscCall(PetscFree4(h->d1, h->Q, h->q, h->qdot));
-  PetscCall(PetscFree4(h->r, h->t, h->len, h->o));
+  PetscCall(PetscFree3(h->frame, h->o, h->inode));
+  PetscCall(PetscFree(h->offset3));
   PetscCall(PetscFree(surface->ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -406,9 +368,10 @@ static PetscErrorCode CopySpec(Host *h, const CoupleHostSpec *p)
   if (p->slope) PetscCall(PetscMalloc1(ne, &h->slope));
   PetscCall(PetscCalloc4(2 * n, &h->offset, 3 * n, &h->x0, n, &h->volume, n, &h->depth));
   PetscCall(PetscCalloc4(3 * ns, &h->d1, 3 * nn, &h->Q, 3 * nn, &h->q, 3 * nn, &h->qdot));
-  PetscCall(PetscCalloc4(3 * ns, &h->r, 3 * ns, &h->t, ns, &h->len, 3 * n, &h->o));
+  PetscCall(PetscCalloc3(ns, &h->frame, 3 * n, &h->o, ne, &h->inode));
   PetscCall(PetscArraycpy(h->rowstart, p->rowstart, ns + 1));
   PetscCall(PetscArraycpy(h->node, p->node, ne));
+  for (PetscInt e = 0; e < ne; e++) h->inode[e] = (int)p->node[e];
   PetscCall(PetscArraycpy(h->shape, p->shape, ne));
   PetscCall(PetscArraycpy(h->section, p->section, n));
   PetscCall(PetscArraycpy(h->volume, p->volume, n));
@@ -440,13 +403,12 @@ static PetscErrorCode PlaceMarkers(CoupleSurface surface)
   PetscFunctionBegin;
   PetscCall(Extrapolate(h, 0.0, &qddot));
   for (PetscInt s = 0; s < h->nsections && h->slope; s++) {
-    SectionMotion m;
-    MoveSection(h, s, qddot, &m);
-    PetscCheck(h->len[s] > 0.0 && !PetscIsInfOrNanReal(h->len[s]), surface->comm, PETSC_ERR_ARG_OUTOFRANGE,
+    MoveSection(h, s, qddot);
+    PetscCheck(h->frame[s].len > 0.0 && !PetscIsInfOrNanReal(h->frame[s].len), surface->comm, PETSC_ERR_ARG_OUTOFRANGE,
                "surface %s, section %" PetscInt_FMT ": the tangent has the length %g; must be > 0", surface->name, s,
-               (double)h->len[s]);
-    AnyNormal(h->t + 3 * s, h->d1 + 3 * s);
-    Transport(h, h->t + 3 * s, h->d1 + 3 * s);
+               (double)h->frame[s].len);
+    AnyNormal(h->frame[s].t, h->d1 + 3 * s);
+    section_transport((int)h->dim, h->frame[s].t, h->d1 + 3 * s);
   }
   PetscCall(PetscMalloc2(3 * h->n, &v, 3 * h->n, &a));
   PetscCall(Kinematics_Host(surface, 0.0, h->x0, v, a));
@@ -462,6 +424,9 @@ PetscErrorCode CoupleSurfaceCreateHost(MPI_Comm comm, const char name[], const C
                            .zeroloads = ZeroLoads_Host,
                            .applyforces = ApplyForces_Host,
                            .advance = Advance_Host,
+                           .getlink = GetLink_Host,
+                           .linkstate = LinkState_Host,
+                           .applyloads = ApplyLoads_Host,
                            .view = View_Host,
                            .destroy = Destroy_Host};
   Host *h;

@@ -18,6 +18,9 @@ typedef struct {
   PetscInt group, n;
   PetscReal *x, *v, *a, *f; /* n x 3 */
   CoupleAudit audit;
+  PetscBool linked;        /* moved by its state (sphlink.h); x, v, f are then filled when somebody asks */
+  PetscReal *state, *load; /* of the link */
+  SphLinkTotals totals;
 } CoupleSlot;
 
 typedef struct _p_CoupleIteration *CoupleIteration;
@@ -28,6 +31,7 @@ struct _p_Couple {
   CoupleSlot *slot;
   PetscInt n, cap;
   PetscReal dtmax;
+  CoupleTransferType transfer;
   PetscBool setup;
   PetscInt maxiterations, iterations,
       unconverged; /* of the strong coupling: allowed per step; made; steps that missed the tolerance */
@@ -47,6 +51,12 @@ extern PetscErrorCode CoupleMoveMarkers(Couple couple, PetscReal ahead);
 /* couple.c: forces (3 per marker of the surfaces that are not held) onto the structures; every structure to time t. */
 extern PetscErrorCode CoupleApplyForces(Couple couple, const PetscReal *f);
 extern PetscErrorCode CoupleAdvanceSurfaces(Couple couple, PetscReal t);
+
+/* couplelink.c */
+extern PetscErrorCode CoupleLinkSetUp(Couple couple);
+extern PetscErrorCode CoupleLinkDestroy(CoupleSlot *slot);
+extern PetscErrorCode CoupleLinkFetch(Couple couple, PetscInt i);
+extern PetscErrorCode CoupleLinkForces(Couple couple, CoupleSlot *slot);
 
 /* coupleiterate.c */
 extern PetscErrorCode CoupleIterate(Couple couple, PetscReal t, PetscReal dt);

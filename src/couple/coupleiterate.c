@@ -174,6 +174,10 @@ PetscErrorCode CoupleSetIterations(Couple c, PetscInt n, PetscReal tolerance, Pe
 {
   PetscFunctionBegin;
   PetscCheck(n >= 1, c->comm, PETSC_ERR_ARG_OUTOFRANGE, "couple_iterations = %" PetscInt_FMT ": must be >= 1", n);
+  for (PetscInt i = 0; n > 1 && c->setup && i < c->n; i++)
+    PetscCheck(!c->slot[i].linked, c->comm, PETSC_ERR_ORDER,
+               "couple_iterations = %" PetscInt_FMT ": must be set before CoupleSetUp(), which chose couple_transfer generalised",
+               n);
   PetscCheck(tolerance > 0.0 && tolerance < 1.0, c->comm, PETSC_ERR_ARG_OUTOFRANGE, "couple_tolerance = %g: must be in (0, 1)",
              (double)tolerance);
   PetscCheck(relaxation > 0.0 && relaxation <= 1.0, c->comm, PETSC_ERR_ARG_OUTOFRANGE,

@@ -2,6 +2,7 @@
   couplerigid.c - adapter of a rigid body: BCE markers fixed in the body frame, wrench about the centre of mass (Eqs. 12 and 14).
 */
 #include "coupleimpl.h"
+#include "sectionmath.h"
 
 typedef struct {
   Rigid rigid;
@@ -9,7 +10,7 @@ typedef struct {
   PetscReal mass;
   PetscReal *xb, *x0, *volume, *depth; /* body frame and rest positions (n x 3), volumes, depths (n) */
   PetscReal X[3], V[3], omega[3];      /* state of the last kinematics call */
-  PetscReal *x, *v;                    /* marker state of that call, n x 3 */
+  PetscReal *o;                        /* markers from the centre of mass in that call, n x 3 */
   PetscReal F[3], T[3];                /* fluid force and torque of the last step */
   PetscReal A[3], alpha[3], dt;        /* mean accelerations over the last step, its length */
   PetscReal V0[3], omega0[3], t0;      /* at the end of the last step */
@@ -44,7 +45,8 @@ static void Rotate(const PetscReal p[3], const PetscReal o[3], PetscReal r[3])
   for (int k = 0; k < 3; k++) r[k] = o[k] + s1 * c[k] + s2 * d[k];
 }
 
-static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
+/* The body extrapolated by dt, as the state of a section: sectionmath.h. */
+static PetscErrorCode LinkState_Rigid(CoupleSurface s, PetscReal dt, PetscReal *state)
 {
   Body *b = (Body *)s->ctx;
   PetscReal q[4], R[9], A[3], alpha[3], turn[3];
@@ -59,23 +61,33 @@ static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal 
   RigidRotationMatrix(q, R);
   for (int k = 0; k < 3; k++) {
     turn[k] = dt * (b->omega[k] + 0.5 * dt * alpha[k]);
-    b->X[k] += dt * (b->V[k] + 0.5 * dt * A[k]);
-    b->V[k] += dt * A[k];
-    b->omega[k] += dt * alpha[k];
+    state[k] = b->X[k] += dt * (b->V[k] + 0.5 * dt * A[k]);
+    state[3 + k] = b->V[k] += dt * A[k];
+    state[6 + k] = A[k];
+    state[9 + k] = b->omega[k] += dt * alpha[k];
+    state[12 + k] = alpha[k];
   }
+  for (int c = 0; c < 3; c++) {
+    const PetscReal e[3] = {R[c], R[3 + c], R[6 + c]};
+    PetscReal turned[3];
+    Rotate(turn, e, turned);
+    for (int k = 0; k < 3; k++) state[15 + 3 * k + c] = turned[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal *x, PetscReal *v, PetscReal *a)
+{
+  Body *b = (Body *)s->ctx;
+  PetscReal state[SECTION_BODY_STATE];
+  FrondSection frame;
+
+  PetscFunctionBegin;
+  PetscCall(LinkState_Rigid(s, dt, state));
+  section_from_body(state, &frame);
   for (PetscInt i = 0; i < b->n; i++) {
-    const PetscReal *p = b->xb + 3 * i, o0[3] = {R[0] * p[0] + R[1] * p[1] + R[2] * p[2], R[3] * p[0] + R[4] * p[1] + R[5] * p[2],
-                                                 R[6] * p[0] + R[7] * p[1] + R[8] * p[2]};
-    PetscReal o[3], wo[3], wwo[3], ao[3];
-    Rotate(turn, o0, o);
-    CoupleCross(b->omega, o, wo);
-    CoupleCross(b->omega, wo, wwo);
-    CoupleCross(alpha, o, ao);
-    for (int k = 0; k < 3; k++) {
-      x[3 * i + k] = b->x[3 * i + k] = b->X[k] + o[k];
-      v[3 * i + k] = b->v[3 * i + k] = b->V[k] + wo[k];
-      a[3 * i + k] = A[k] + ao[k] + wwo[k];
-    }
+    section_offset(&frame, b->xb + 3 * i, b->o + 3 * i);
+    section_marker(&frame, b->o + 3 * i, x + 3 * i, v + 3 * i, a + 3 * i);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,30 +107,41 @@ static PetscErrorCode ZeroLoads_Rigid(CoupleSurface s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ApplyForces_Rigid(CoupleSurface s, const PetscReal *f, CoupleAudit *audit)
+/* Fluid force and torque about the centre of mass of the last kinematics call. */
+static PetscErrorCode ApplyLoads_Rigid(CoupleSurface s, const PetscReal *load, const SphLinkTotals *totals, CoupleAudit *audit)
 {
   Body *b = (Body *)s->ctx;
-  PetscReal F[3] = {0, 0, 0}, T[3] = {0, 0, 0}, XF[3];
+  PetscReal XF[3];
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < b->n; i++) {
-    const PetscReal o[3] = {b->x[3 * i] - b->X[0], b->x[3 * i + 1] - b->X[1], b->x[3 * i + 2] - b->X[2]};
-    PetscReal c[3];
-    CoupleCross(o, f + 3 * i, c);
-    for (int k = 0; k < 3; k++) {
-      F[k] += f[3 * i + k];
-      T[k] += c[k];
-    }
-  }
-  PetscCall(RigidAddLoad(b->rigid, b->body, F, T));
-  CoupleCross(b->X, F, XF);
+  (void)totals;
+  PetscCall(PetscArraycpy(b->F, load, 3));
+  PetscCall(PetscArraycpy(b->T, load + 3, 3));
+  PetscCall(RigidAddLoad(b->rigid, b->body, b->F, b->T));
+  CoupleCross(b->X, b->F, XF);
   for (int k = 0; k < 3; k++) {
-    audit->force_lost[k] = audit->force[k] - F[k];
-    audit->moment_lost[k] = audit->moment[k] - (XF[k] + T[k]);
-    b->F[k] = F[k];
-    b->T[k] = T[k];
+    audit->force_lost[k] = audit->force[k] - b->F[k];
+    audit->moment_lost[k] = audit->moment[k] - (XF[k] + b->T[k]);
   }
-  audit->power_lost = audit->power - (CoupleDot(F, b->V) + CoupleDot(T, b->omega));
+  audit->power_lost = audit->power - (CoupleDot(b->F, b->V) + CoupleDot(b->T, b->omega));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyForces_Rigid(CoupleSurface s, const PetscReal *f, CoupleAudit *audit)
+{
+  const Body *b = (const Body *)s->ctx;
+  PetscReal sums[SECTION_SUMS] = {0.0};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < b->n; i++) section_add_force(b->o + 3 * i, f + 3 * i, sums);
+  PetscCall(ApplyLoads_Rigid(s, sums, NULL, audit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetLink_Rigid(CoupleSurface s, SphLinkSpec *spec)
+{
+  PetscFunctionBegin;
+  *spec = (SphLinkSpec){.nsections = 1, .offset = ((const Body *)s->ctx)->xb};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -232,7 +255,7 @@ static PetscErrorCode Destroy_Rigid(CoupleSurface s)
   PetscCall(PetscFree(b->xb));
   PetscCall(PetscFree(b->volume));
   PetscCall(PetscFree(b->depth));
-  PetscCall(PetscFree3(b->x0, b->x, b->v));
+  PetscCall(PetscFree2(b->x0, b->o));
   PetscCall(PetscFree(s->ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -240,9 +263,20 @@ static PetscErrorCode Destroy_Rigid(CoupleSurface s)
 /* A surface of the body without markers. */
 static PetscErrorCode CreateBody(Rigid rigid, PetscInt body, const char name[], Body **out, CoupleSurface *surface)
 {
-  const CoupleSurfaceOps ops = {GetMarkers_Rigid, Kinematics_Rigid, ZeroLoads_Rigid, ApplyForces_Rigid,
-                                Advance_Rigid,    Momentum_Rigid,   View_Rigid,      Destroy_Rigid,
-                                StateSize_Rigid,  Save_Rigid,       Load_Rigid};
+  const CoupleSurfaceOps ops = {.getmarkers = GetMarkers_Rigid,
+                                .kinematics = Kinematics_Rigid,
+                                .zeroloads = ZeroLoads_Rigid,
+                                .applyforces = ApplyForces_Rigid,
+                                .advance = Advance_Rigid,
+                                .momentum = Momentum_Rigid,
+                                .view = View_Rigid,
+                                .destroy = Destroy_Rigid,
+                                .statesize = StateSize_Rigid,
+                                .save = Save_Rigid,
+                                .load = Load_Rigid,
+                                .getlink = GetLink_Rigid,
+                                .linkstate = LinkState_Rigid,
+                                .applyloads = ApplyLoads_Rigid};
   RigidBodySpec spec;
   PetscInt joints;
   Body *b;
@@ -266,13 +300,13 @@ static PetscErrorCode CreateBody(Rigid rigid, PetscInt body, const char name[], 
 /* Room for the state of the markers in xb, and their places now. */
 static PetscErrorCode PlaceMarkers(CoupleSurface surface, Body *b)
 {
-  PetscReal *a;
+  PetscReal *v, *a;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(3 * b->n, &b->x0, 3 * b->n, &b->x, 3 * b->n, &b->v));
-  PetscCall(PetscMalloc1(3 * b->n, &a));
-  PetscCall(Kinematics_Rigid(surface, 0.0, b->x0, b->v, a));
-  PetscCall(PetscFree(a));
+  PetscCall(PetscMalloc2(3 * b->n, &b->x0, 3 * b->n, &b->o));
+  PetscCall(PetscMalloc2(3 * b->n, &v, 3 * b->n, &a));
+  PetscCall(Kinematics_Rigid(surface, 0.0, b->x0, v, a));
+  PetscCall(PetscFree2(v, a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

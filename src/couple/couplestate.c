@@ -27,6 +27,7 @@ PetscErrorCode CoupleGetMarkers(Couple c, PetscInt i, PetscInt *n, const PetscRe
   PetscCheck(c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetUp() must come before CoupleGetMarkers()");
   PetscCheck(i >= 0 && i < c->n, c->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "surface %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", i, c->n);
+  if (x || v || f) PetscCall(CoupleLinkFetch(c, i));
   if (n) *n = c->slot[i].n;
   if (x) *x = c->slot[i].x;
   if (v) *v = c->slot[i].v;
@@ -49,6 +50,7 @@ static PetscErrorCode MoveSurface(Couple c, PetscInt i, FrondState *state)
   PetscCall(PetscSNPrintf(name, sizeof(name), "couple/surface_%" PetscInt_FMT "/audit", i));
   FrondMoveReal(state, name, (PetscReal *)&s->audit, sizeof(s->audit) / sizeof(PetscReal));
   PetscCall(PetscSNPrintf(name, sizeof(name), "couple/surface_%" PetscInt_FMT "/force", i));
+  if (state->way == FROND_STATE_SAVE) PetscCall(CoupleLinkForces(c, s)); /* for a coupling that reads it without links */
   FrondMoveReal(state, name, s->f, 3 * s->n);
   PetscCall((*surface->ops.statesize)(surface, &n));
   if (state->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));

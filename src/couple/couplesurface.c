@@ -1,5 +1,6 @@
 /* couplesurface.c - the surface object itself, and the adapter for walls with prescribed motion. */
 #include "coupleimpl.h"
+#include "sectionmath.h"
 
 /*@
   CoupleSurfaceCreate - Wrap a structure for the coupling. All of ops but momentum, view and destroy must be set; ctx is the
@@ -13,6 +14,8 @@ PetscErrorCode CoupleSurfaceCreate(MPI_Comm comm, const char name[], const Coupl
   PetscFunctionBegin;
   PetscCheck(!ops->statesize == !ops->save && !ops->save == !ops->load, comm, PETSC_ERR_ARG_NULL,
              "surface %s: statesize, save and load must be given together or not at all", name);
+  PetscCheck(!ops->getlink == !ops->linkstate && !ops->linkstate == !ops->applyloads, comm, PETSC_ERR_ARG_NULL,
+             "surface %s: getlink, linkstate and applyloads must be given together or not at all", name);
   PetscCheck(ops->getmarkers && ops->kinematics && ops->zeroloads && ops->applyforces && ops->advance, comm, PETSC_ERR_ARG_NULL,
              "surface %s: getmarkers, kinematics, zeroloads, applyforces and advance must all be given", name);
   PetscCall(PetscNew(&s));
@@ -99,6 +102,37 @@ static PetscErrorCode Kinematics_Wall(CoupleSurface s, PetscReal dt, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* As a body that has been carried from rest, without turning. */
+static PetscErrorCode GetLink_Wall(CoupleSurface s, SphLinkSpec *spec)
+{
+  PetscFunctionBegin;
+  *spec = (SphLinkSpec){.nsections = 1, .offset = ((const Wall *)s->ctx)->x};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LinkState_Wall(CoupleSurface s, PetscReal dt, PetscReal *state)
+{
+  const Wall *w = (const Wall *)s->ctx;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(state, SECTION_BODY_STATE));
+  for (int k = 0; k < 3; k++) {
+    state[k] = (w->t + dt) * w->velocity[k];
+    state[3 + k] = w->velocity[k];
+    state[15 + 4 * k] = 1.0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyLoads_Wall(CoupleSurface s, const PetscReal *load, const SphLinkTotals *totals, CoupleAudit *audit)
+{
+  (void)s;
+  (void)load;
+  (void)totals;
+  (void)audit;
+  return PETSC_SUCCESS;
+}
+
 static PetscErrorCode ZeroLoads_Wall(CoupleSurface s)
 {
   (void)s;
@@ -166,6 +200,9 @@ PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscIn
                                 .zeroloads = ZeroLoads_Wall,
                                 .applyforces = ApplyForces_Wall,
                                 .advance = Advance_Wall,
+                                .getlink = GetLink_Wall,
+                                .linkstate = LinkState_Wall,
+                                .applyloads = ApplyLoads_Wall,
                                 .view = View_Wall,
                                 .destroy = Destroy_Wall,
                                 .statesize = StateSize_Wall,

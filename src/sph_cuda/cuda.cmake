@@ -5,7 +5,7 @@ endif()
 enable_language(CUDA)
 find_package(CUDAToolkit REQUIRED)
 
-add_library(frond_sph_cuda OBJECT sph_cuda.cu sph_cudabuild.cu sph_cudastep.cu sph_cudapairs_single.cu sph_cudapairs_double.cu)
+add_library(frond_sph_cuda OBJECT sph_cuda.cu sph_cudalink.cu sph_cudabuild.cu sph_cudastep.cu sph_cudapairs_single.cu sph_cudapairs_double.cu)
 # Single-precision divisions and roots to 2 ulp: within the error bound of the pair sums, and much shorter.
 set_source_files_properties(sph_cudapairs_single.cu PROPERTIES COMPILE_OPTIONS "-prec-div=false;-prec-sqrt=false")
 set_target_properties(frond_sph_cuda PROPERTIES POSITION_INDEPENDENT_CODE ON CUDA_STANDARD 17 CUDA_STANDARD_REQUIRED ON)

@@ -1,5 +1,6 @@
 /* sph.c - lifecycle, backend choice and stepping of the fluid; no physics. */
 #include "sphimpl.h"
+#include "sphlink.h"
 #include <math.h>
 
 PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output;
@@ -70,6 +71,7 @@ PetscErrorCode SphDestroy(Sph *sph)
   PetscFunctionBegin;
   if (!*sph) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*sph)->ops) PetscCall((*(*sph)->ops->destroy)(*sph));
+  PetscCall(SphLinksDestroy(*sph));
   PetscCall(SphFreeArrays(*sph));
   PetscCall(PetscFree((*sph)->forcetime));
   PetscCall(PetscFree((*sph)->force));
@@ -77,8 +79,8 @@ PetscErrorCode SphDestroy(Sph *sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The one table of backends. */
-static PetscErrorCode ChooseBackend(Sph sph)
+/* The one table of backends. fallback: auto was asked for and there is no device. */
+static PetscErrorCode FindBackend(Sph sph, const SphOps **ops, PetscBool *fallback)
 {
   PetscBool cpu, cuda, any;
 
@@ -87,23 +89,42 @@ static PetscErrorCode ChooseBackend(Sph sph)
   PetscCall(PetscStrcmp(sph->type, SPHCUDA, &cuda));
   PetscCall(PetscStrcmp(sph->type, SPHAUTO, &any));
   PetscCheck(cpu || cuda || any, sph->comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "sph_type = %s: must be cpu, cuda or auto", sph->type);
+  *ops = &SphOps_CPU;
+  *fallback = PETSC_FALSE;
 #if defined(FROND_HAVE_CUDA)
   if (cuda || any) {
     PetscBool have;
     PetscCall(SphCudaAvailable(&have));
     PetscCheck(have || any, sph->comm, PETSC_ERR_SUP_SYS, "sph_type = cuda: no CUDA device was found; use cpu or auto");
-    if (have) {
-      sph->ops = &SphOps_CUDA;
-      PetscCall(PetscStrncpy(sph->type, SPHCUDA, sizeof(sph->type)));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
+    if (have) *ops = &SphOps_CUDA;
+    *fallback = have ? PETSC_FALSE : PETSC_TRUE;
   }
 #else
   PetscCheck(!cuda, sph->comm, PETSC_ERR_SUP, "sph_type = cuda: this build has no CUDA backend; use cpu or auto");
+  *fallback = any;
 #endif
-  if (any) PetscCall(PetscPrintf(sph->comm, "sph_type auto: no CUDA device, using the CPU backend\n"));
-  sph->ops = &SphOps_CPU;
-  PetscCall(PetscStrncpy(sph->type, SPHCPU, sizeof(sph->type)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ChooseBackend(Sph sph)
+{
+  PetscBool fallback = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(FindBackend(sph, &sph->ops, &fallback));
+  if (fallback) PetscCall(PetscPrintf(sph->comm, "sph_type auto: no CUDA device, using the CPU backend\n"));
+  PetscCall(PetscStrncpy(sph->type, sph->ops == &SphOps_CPU ? SPHCPU : SPHCUDA, sizeof(sph->type)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphGetResident(Sph sph, PetscBool *yes)
+{
+  PetscBool fallback = PETSC_FALSE;
+  const SphOps *ops;
+
+  PetscFunctionBegin;
+  PetscCall(FindBackend(sph, &ops, &fallback));
+  *yes = ops->linkmotion ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -346,6 +367,8 @@ PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x,
   PetscFunctionBegin;
   PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCheck(!SphIsLinked(sph, group), sph->comm, PETSC_ERR_ORDER,
+             "boundary group %" PetscInt_FMT " is linked: SphSetGroupState() moves it", group);
   PetscCall(PetscLogEventBegin(SPH_Motion, 0, 0, 0, 0));
   PetscCall((*sph->ops->motion)(sph, group, x, v, a));
   PetscCall(PetscLogEventEnd(SPH_Motion, 0, 0, 0, 0));

@@ -72,15 +72,10 @@ PetscErrorCode SphCudaReserve(SphCuda *cuda, void **p, size_t bytes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define SPH_MAXBUFFERS 64
+#define SPH_MAXBUFFERS 96
 
 typedef struct {
-  void **p;
-  size_t bytes;
-} Buffer;
-
-typedef struct {
-  Buffer b[SPH_MAXBUFFERS];
+  SphCudaTable b[SPH_MAXBUFFERS];
   int n;
 } BufferList;
 
@@ -112,6 +107,9 @@ static void ListBuffers(Sph sph, SphCuda *cuda, BufferList *list)
   Want(list, &cuda->result, sizeof(SphCudaBox));
   Want(list, &cuda->motion, 3 * nb);
   Want(list, &cuda->force, nb);
+  SphCudaTable t[SPH_LINKTABLES];
+  const int nt = SphCudaLinkTables(&cuda->links, cuda->nb, t);
+  for (int k = 0; k < nt; k++) Want(list, t[k].p, t[k].bytes);
 }
 
 /* All device memory at once, or a message before anything is allocated. */
@@ -193,6 +191,7 @@ static PetscErrorCode Push_CUDA(Sph sph)
     }
   }
   cuda->dirty0 = cuda->dirty1 = 0;
+  SphCudaLinkForget(cuda);
   cuda->uploading = PETSC_FALSE;
   cuda->built = PETSC_FALSE;
   cuda->hostcurrent = PETSC_TRUE;
@@ -216,11 +215,12 @@ static PetscErrorCode Pull_CUDA(Sph sph)
 }
 
 /* Boundary markers [b0, b1) take the motion in `motion`. */
-static __global__ void MotionKernel(SphCudaArrays d, int dim, int nfluid, int nb, const double *motion, int b0, int b1)
+static __global__ void MotionKernel(SphCudaArrays d, int dim, int nfluid, int nb, const double *motion, const int *section,
+                                    int b0, int b1)
 {
   const int b = b0 + SPH_ITEM;
 
-  if (b >= b1) return;
+  if (b >= b1 || (section && section[b] >= 0)) return; /* linked ones move by their state */
   const int i = d.slot[nfluid + b];
   const size_t o = 3 * (size_t)b, stride = 3 * (size_t)nb;
   for (int k = 0; k < dim; k++) {
@@ -239,8 +239,8 @@ static __global__ void ForceKernel(SphCudaArrays d, int nfluid, int nb, double *
   for (int k = 0; k < 3; k++) force[3 * (size_t)b + k] = d.m[i] * d.rate.a[k][i];
 }
 
-/* Send the motion collected since the last time. */
-PetscErrorCode SphCudaFlushMotion(Sph sph)
+/* Send the motion of groups that are not linked. */
+static PetscErrorCode FlushMarkers(Sph sph)
 {
   SphCuda *cuda = (SphCuda *)sph->data;
   const size_t first = 3 * (size_t)cuda->dirty0, bytes = 3 * (size_t)(cuda->dirty1 - cuda->dirty0) * sizeof(double),
@@ -253,11 +253,32 @@ PetscErrorCode SphCudaFlushMotion(Sph sph)
                                 cudaMemcpyHostToDevice, cuda->stream));
   SphCallCUDA(cudaEventRecord(cuda->uploaded, cuda->stream));
   SphCallCUDA(SphLaunch(cuda->stream, cuda->dirty1 - cuda->dirty0, MotionKernel, cuda->d, (int)sph->par.dim, (int)sph->nfluid,
-                        (int)cuda->nb, cuda->motion, (int)cuda->dirty0, (int)cuda->dirty1));
+                        (int)cuda->nb, cuda->motion, (const int *)cuda->links.section, (int)cuda->dirty0, (int)cuda->dirty1));
   cuda->uploading = PETSC_TRUE;
   cuda->hostcurrent = PETSC_FALSE;
   cuda->dirty0 = cuda->dirty1 = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Send the motion collected since the last time. */
+PetscErrorCode SphCudaFlushMotion(Sph sph)
+{
+  SphCuda *cuda = (SphCuda *)sph->data;
+
+  PetscFunctionBegin;
+  if (cuda->dirty0 == cuda->dirty1 && cuda->link0 == cuda->link1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FlushMarkers(sph));
+  PetscCall(SphCudaLinkFlush(sph));
   PetscCall(SphCudaStageEnd(cuda));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The copy engine may still be reading hmotion and hstate. */
+PetscErrorCode SphCudaAwaitUpload(SphCuda *cuda)
+{
+  PetscFunctionBegin;
+  if (cuda->uploading) SphCallCUDA(cudaEventSynchronize(cuda->uploaded));
+  cuda->uploading = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -278,10 +299,7 @@ static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, c
 
   PetscFunctionBegin;
   if (Same(hx, x, 3 * (b1 - b0)) && Same(hv, v, 3 * (b1 - b0)) && Same(ha, a, 3 * (b1 - b0))) PetscFunctionReturn(PETSC_SUCCESS);
-  if (cuda->uploading) { /* the copy engine may still be reading hmotion */
-    SphCallCUDA(cudaEventSynchronize(cuda->uploaded));
-    cuda->uploading = PETSC_FALSE;
-  }
+  PetscCall(SphCudaAwaitUpload(cuda));
   PetscCall(PetscArraycpy(hx, x, 3 * (b1 - b0)));
   PetscCall(PetscArraycpy(hv, v, 3 * (b1 - b0)));
   if (a)
@@ -331,7 +349,9 @@ static PetscErrorCode Rates_CUDA(Sph sph)
   PetscCall((*pairs->rates)(sph));
   PetscCall(SphCudaStageEnd(cuda));
   PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
-  cuda->hostcurrent = cuda->forcecurrent = PETSC_FALSE;
+  cuda->hostcurrent = cuda->forcecurrent = cuda->loadcurrent = PETSC_FALSE;
+  /* forces of a second stage go to the host while the device takes the step */
+  if (cuda->links.nlinks && sph->insidestep) PetscCall(SphCudaLinkReduce(sph));
   sph->evaluations += (PetscReal)(sph->n - sph->left);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -351,7 +371,7 @@ static PetscErrorCode State_CUDA(Sph sph, FrondState *s)
   PetscFunctionBegin;
   if (load) {
     PetscCall((*s->has)(s, "fluid/search_cuda/built", &there));
-    cuda->forcecurrent = PETSC_FALSE;
+    cuda->forcecurrent = cuda->loadcurrent = PETSC_FALSE;
   }
   if (!there) { /* a state of the other backend */
     PetscCall(Push_CUDA(sph));
@@ -399,9 +419,12 @@ static PetscErrorCode SetUp_CUDA(Sph sph)
   cuda->nb = sph->n - sph->nfluid;
   SphCallCUDA(cudaStreamCreateWithFlags(&cuda->stream, cudaStreamNonBlocking));
   SphCallCUDA(cudaEventCreateWithFlags(&cuda->uploaded, cudaEventDisableTiming));
+  SphCallCUDA(cudaEventCreateWithFlags(&cuda->downloaded, cudaEventDisableTiming));
+  SphCudaLinkCount(sph, &cuda->links);
   PetscCall(SphCudaSortBytes(sph->n, &cuda->tempbytes));
   PetscCall(SphCudaReduceBytes(sph, &cuda->tempbytes));
   PetscCall(Allocate(sph, cuda));
+  PetscCall(SphCudaLinkSetUp(sph));
   PetscCall(Push_CUDA(sph));
   PetscCall(
       PetscInfo(NULL, "CUDA backend: %g bytes of device memory, %g per marker\n", cuda->bytes, cuda->bytes / (double)sph->n));
@@ -422,6 +445,10 @@ static PetscErrorCode Destroy_CUDA(Sph sph)
   (void)cudaFreeHost(cuda->hresult);
   (void)cudaFreeHost(cuda->hmotion);
   (void)cudaFreeHost(cuda->hforce);
+  (void)cudaFreeHost(cuda->hstate);
+  (void)cudaFreeHost(cuda->hload);
+  PetscCall(PetscFree(cuda->hlink));
+  if (cuda->downloaded) (void)cudaEventDestroy(cuda->downloaded);
   if (cuda->uploaded) (void)cudaEventDestroy(cuda->uploaded);
   if (cuda->stream) (void)cudaStreamDestroy(cuda->stream);
   (void)cudaGetLastError();
@@ -429,6 +456,6 @@ static PetscErrorCode Destroy_CUDA(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,    SphCudaBuild, Rates_CUDA,   SphCudaHalfStep, SphCudaFullStep,
-                                       SphCudaReinit, Motion_CUDA,  Force_CUDA,   SphCudaLimits,   Pull_CUDA,
-                                       Push_CUDA,     Destroy_CUDA, SphCudaCheck, State_CUDA};
+extern "C" const SphOps SphOps_CUDA = {
+    SetUp_CUDA,    SphCudaBuild, Rates_CUDA, SphCudaHalfStep, SphCudaFullStep, SphCudaReinit, Motion_CUDA,       Force_CUDA,
+    SphCudaLimits, Pull_CUDA,    Push_CUDA,  Destroy_CUDA,    SphCudaCheck,    State_CUDA,    SphCudaLinkMotion, SphCudaLinkLoad};

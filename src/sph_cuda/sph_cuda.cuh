@@ -12,7 +12,7 @@
 #include "frondsys.h"
 #include <petscviewer.h>
 extern "C" {
-#include "sphimpl.h"
+#include "sphlinkimpl.h"
 }
 
 #define SPH_BLOCK 128 /* threads per block */
@@ -29,6 +29,35 @@ typedef struct {
   int *cellstart; /* 2 ncell + 2 offsets */
 } SphCudaArrays;
 
+/* One linked group (sphlink.h): places of its first state (a flag, then the state), load and section; markers [b0, b1). */
+typedef struct {
+  int nnodes, slopes, state, load, nload, section0, section1, b0, b1;
+} SphCudaLinkInfo;
+
+/* Linked groups one after the other, device pointers; passed to kernels by value. */
+typedef struct {
+  int nlinks, nsections, nentries, nnodes, nchunks, nstate, nload;
+  SphCudaLinkInfo *link;
+  int *sectionlink, *rowstart;                     /* per section */
+  int *section;                                    /* per boundary marker, -1: not linked */
+  double *offset;                                  /* 3 per boundary marker */
+  int *chunkstart, *chunk0, *chunk1;               /* chunks of a section; markers [chunk0, chunk1) of a chunk */
+  int *node;                                       /* per entry, within its link */
+  double *shape, *slope;                           /* per entry */
+  int *nodestart, *byentry, *bysection, *nodeload; /* entries of a node, their sections; place of its load */
+  double *state;
+  FrondSection *frame;      /* per section */
+  double *chunksums, *sums; /* SECTION_SUMS per chunk, per section */
+  double *load;             /* per link: its load, then SECTION_TOTALS */
+} SphCudaLinks;
+
+typedef struct {
+  void **p;
+  size_t bytes;
+} SphCudaTable;
+#define SPH_LINKCONSTANTS 15
+#define SPH_LINKTABLES 20
+
 typedef struct {
   SphCudaArrays d;
   SphGrid grid;
@@ -44,7 +73,13 @@ typedef struct {
   double *motion, *hmotion; /* 3 x nb x 3: x, v, a of boundary markers in the order added; device and pinned */
   double *force, *hforce;   /* nb x 3 */
   PetscInt dirty0, dirty1;  /* range of hmotion not yet on the device */
-  cudaEvent_t uploaded;     /* hmotion may be written again */
+  cudaEvent_t uploaded;     /* hmotion and hstate may be written again */
+  SphCudaLinks links;
+  SphCudaLinkInfo *hlink; /* links.link on the host */
+  double *hstate, *hload; /* links.state and links.load in pinned memory */
+  int link0, link1;       /* range of links whose state is not yet on the device */
+  cudaEvent_t downloaded; /* hload has arrived */
+  PetscBool loadcurrent, downloading;
   PetscBool uploading, built, hostcurrent, forcecurrent;
   PetscBool timing; /* synchronise after every stage, so that -log_view attributes its time */
   cudaStream_t stream;
@@ -69,6 +104,18 @@ extern PetscErrorCode SphCudaError(cudaError_t err, const char call[], const cha
 extern PetscErrorCode SphCudaStageEnd(SphCuda *cuda);
 extern PetscErrorCode SphCudaFlushMotion(Sph sph);
 extern PetscErrorCode SphCudaReserve(SphCuda *cuda, void **p, size_t bytes);
+
+extern PetscErrorCode SphCudaAwaitUpload(SphCuda *cuda);
+
+/* sph_cudalink.cu */
+extern void SphCudaLinkCount(Sph sph, SphCudaLinks *l);
+extern int SphCudaLinkTables(SphCudaLinks *l, PetscInt nb, SphCudaTable *t);
+extern PetscErrorCode SphCudaLinkSetUp(Sph sph);
+extern void SphCudaLinkForget(SphCuda *cuda);
+extern PetscErrorCode SphCudaLinkFlush(Sph sph);
+extern PetscErrorCode SphCudaLinkMotion(Sph sph, PetscInt g);
+extern PetscErrorCode SphCudaLinkReduce(Sph sph);
+extern PetscErrorCode SphCudaLinkLoad(Sph sph, PetscInt g, PetscReal *load, double *totals);
 
 /* sph_cudabuild.cu */
 extern PetscErrorCode SphCudaBuild(Sph sph);

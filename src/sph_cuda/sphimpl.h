@@ -78,6 +78,9 @@ typedef struct _SphOps {
   PetscErrorCode (*check)(Sph); /* as SphCheckFinite(), where the state lives; NULL: the host arrays are the state */
   PetscErrorCode (*state)(Sph, FrondState *); /* move the search structure, and all of the state to the device when loading; NULL:
                                                  it is built anew when a state is saved or restored */
+  /* sphlink.c: link number k has a new state; its load and the SECTION_TOTALS totals. NULL: done on the host */
+  PetscErrorCode (*linkmotion)(Sph, PetscInt k);
+  PetscErrorCode (*linkload)(Sph, PetscInt k, PetscReal *load, double *totals);
 } SphOps;
 
 struct _p_Sph {
@@ -116,7 +119,8 @@ struct _p_Sph {
   PetscReal evaluations;                        /* marker right-hand sides evaluated */
 
   const SphOps *ops;
-  void *data; /* backend */
+  void *data;              /* backend */
+  struct _SphLinks *links; /* sphlink.c; NULL: none */
 };
 
 FROND_VISIBLE extern const SphOps SphOps_CPU;
@@ -141,6 +145,11 @@ static inline int SphTwoVelocities(const SphParams *p)
 {
   return p->zeta > 0.0 || p->shifting != SPH_SHIFTING_NONE || p->wall == SPH_WALL_ADAMI;
 }
+
+/* sphlink.c */
+FROND_VISIBLE extern PetscBool SphIsLinked(Sph sph, PetscInt group);
+extern PetscErrorCode SphLinksState(Sph sph, FrondState *s);
+extern PetscErrorCode SphLinksDestroy(Sph sph);
 
 /* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those
  * that no term reads. */

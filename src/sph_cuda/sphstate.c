@@ -95,6 +95,7 @@ PetscErrorCode SphMoveState(Sph sph, FrondState *s)
   FrondMoveInt32(s, "fluid/slot", sph->slot, sph->n);
   if (sph->ops->state) PetscCall((*sph->ops->state)(sph, s));
   if (!sph->ops->state && s->way != FROND_STATE_COUNT) PetscCall((*sph->ops->push)(sph));
+  PetscCall(SphLinksState(sph, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

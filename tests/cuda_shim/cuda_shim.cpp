@@ -221,6 +221,8 @@ static bool BadCopy(const void *dst, const void *src, size_t bytes, cudaMemcpyKi
 cudaError_t cudaMemcpyAsync(void *dst, const void *src, size_t bytes, cudaMemcpyKind kind, cudaStream_t stream)
 {
   if (BadCopy(dst, src, bytes, kind)) return cudaErrorInvalidValue;
+  if (kind == cudaMemcpyHostToDevice) shim.counts.todevice += bytes;
+  if (kind == cudaMemcpyDeviceToHost) shim.counts.fromdevice += bytes;
   if (kind == cudaMemcpyHostToDevice && !Inside(shim.pinned, src, bytes)) {
     const std::string now((const char *)src, bytes);
     return cudaShimEnqueue(stream, [=]() { memcpy(dst, now.data(), bytes); });

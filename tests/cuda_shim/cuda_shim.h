@@ -17,11 +17,11 @@ void cudaShimSetMemory(size_t bytes);
 void cudaShimSetDeviceCount(int n);
 /* The call after `calls` more of them fails with the error, and every one after it; calls < 0 ends the failure. */
 void cudaShimFailCall(long calls, int error);
-/* Allocations that were not freed, bytes in them, largest number of bytes so far, calls of cudaMalloc so far, API calls so far.
- */
+/* Allocations that were not freed; calls of cudaMalloc, API calls and launches so far; bytes in allocations, largest so far;
+ * bytes copied to the device and from it so far. */
 typedef struct {
   long live, mallocs, calls, launches;
-  size_t bytes, peak;
+  size_t bytes, peak, todevice, fromdevice;
 } CudaShimCounts;
 CudaShimCounts cudaShimGetCounts(void);
 /* Some device address, to show that the host cannot read it. */
