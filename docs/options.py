@@ -26,7 +26,8 @@ TITLES = [
     ("Coupling options", "Coupling"),
     ("Slender beams (ANCF)", "Beam solver"),
     ("Rigid bodies", "Rigid body solver"),
-    ("Short-range forces", "Short-range forces of rigid bodies"),
+    ("Short-range forces", "Short-range forces of rigid bodies and beams"),
+    ("Short-range forces of beams", "Short-range forces of beams"),
 ]
 LINE = re.compile(r"^ {2,4}-(\w+):?\s*(?:<(.*?)>:?)?\s*(.*?)\s*(?:\((\w*)\))?$")
 
@@ -67,7 +68,7 @@ def reference(program):
     found = blocks(text)
     out = [BEGIN, ""]
     for start, title in TITLES:
-        names = [t for t in found if t == start or (t.startswith(start) and start != "Rigid bodies")]
+        names = [t for t in found if t == start or (t.startswith(start) and start not in ("Rigid bodies", "Short-range forces"))]
         if not names:
             sys.exit("docs/options.py: frond -help has no block '%s'" % start)
         out += ["#### " + title, "", "| option | default | meaning |", "| --- | --- | --- |"]

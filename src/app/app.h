@@ -149,10 +149,11 @@ typedef struct {
 typedef struct {
   AppScene scene;
   AppErrors *errors;
-  Sph sph;       /* NULL without fluid */
-  Ancf ancf;     /* NULL without beams */
-  Rigid rigid;   /* NULL without bodies */
-  Couple couple; /* NULL without fluid */
+  Sph sph;                /* NULL without fluid */
+  Ancf ancf;              /* NULL without beams */
+  Rigid rigid;            /* NULL without bodies */
+  Couple couple;          /* NULL without fluid */
+  CoupleShort shortrange; /* of the beams; NULL without beams and in 2D */
   PetscInt dim, nsurfaces;
   AppSurface *surfaces;
   PetscInt nfluid, nboundary;
@@ -216,6 +217,7 @@ PetscErrorCode AppSceneReadJoints(AppScene *scene);
 PetscErrorCode AppBuildLumped(App *app);
 PetscErrorCode AppBuildJoints(App *app);
 PetscErrorCode AppBuildShortRange(App *app);
+PetscErrorCode AppBuildShortBeams(App *app);
 PetscErrorCode AppCheckOverlap(App *app);
 PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v[3]);
 

@@ -96,6 +96,7 @@ static PetscErrorCode build_structures(App *app)
   if (app->sph && app->scene.buoyancy == BUOYANCY_ARCHIMEDES) PetscCall(SphGetDensity(app->sph, &rho));
   PetscCall(build_beams(app, rho));
   PetscCall(build_bodies(app, rho));
+  PetscCall(AppBuildShortBeams(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,6 +227,7 @@ static PetscErrorCode build_couple(App *app)
   PetscCall(CoupleCreate(PETSC_COMM_SELF, &app->couple));
   PetscCall(CoupleSetSph(app->couple, app->sph));
   PetscCall(CoupleSetFromOptions(app->couple));
+  PetscCall(CoupleSetShort(app->couple, app->shortrange));
   PetscCall(check_places(app));
   PetscCall(AppFluidFill(app));
   PetscCall(add_walls(app));
@@ -266,6 +268,7 @@ PetscErrorCode AppDestroy(App *app)
   for (PetscInt i = 0; i < app->nsurfaces; i++) PetscCall(CoupleSurfaceDestroy(&app->surfaces[i].surface));
   PetscCall(PetscFree(app->surfaces));
   PetscCall(SphDestroy(&app->sph));
+  PetscCall(CoupleShortDestroy(&app->shortrange));
   PetscCall(AncfDestroy(&app->ancf));
   PetscCall(RigidDestroy(&app->rigid));
   for (int f = 0; f < 6; f++) PetscCall(RigidDestroy(&app->mover[f]));
@@ -288,8 +291,13 @@ PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt)
   }
   t = app->t + app->scene.dt;
   if (t > tmax - 1e-9 * app->scene.dt) t = tmax;
+  if (app->shortrange) {
+    PetscCall(AncfZeroLoads(app->ancf));
+    PetscCall(CoupleShortApply(app->shortrange, t - app->t));
+  }
   if (app->ancf) PetscCall(AncfAdvance(app->ancf, t));
   if (app->rigid) PetscCall(RigidAdvance(app->rigid, t));
+  if (app->shortrange) PetscCall(CoupleShortRemove(app->shortrange));
   *dt = t - app->t;
   app->t = t;
   app->step++;

@@ -81,9 +81,13 @@ static PetscErrorCode rigid_options(void)
 
 static PetscErrorCode couple_options(void)
 {
+  CoupleShort sr;
   Couple couple;
 
   PetscFunctionBegin;
+  PetscCall(CoupleShortCreate(PETSC_COMM_SELF, NULL, NULL, &sr));
+  PetscCall(CoupleShortSetFromOptions(sr));
+  PetscCall(CoupleShortDestroy(&sr));
   PetscCall(CoupleCreate(PETSC_COMM_SELF, &couple));
   PetscCall(CoupleSetFromOptions(couple));
   PetscCall(CoupleDestroy(&couple));

@@ -223,26 +223,65 @@ PetscErrorCode AppBuildJoints(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Periods of the domain, m; the faces that are walls: a point and the normal of each. Nothing without fluid. */
+static PetscInt domain(const App *app, PetscReal period[3], PetscReal x[6][3], PetscReal n[6][3])
+{
+  const AppScene *s = &app->scene;
+  PetscInt walls = 0;
+
+  for (PetscInt a = 0; a < 3; a++) period[a] = app->sph && a < app->dim && s->periodic[a] ? s->hi[a] - s->lo[a] : 0;
+  for (int f = 0; f < 2 * app->dim && app->sph; f++) {
+    if (!s->wall[f]) continue;
+    for (int a = 0; a < 3; a++) {
+      x[walls][a] = f % 2 ? s->hi[a] : s->lo[a];
+      n[walls][a] = a == f / 2 ? (f % 2 ? -1 : 1) : 0;
+    }
+    walls++;
+  }
+  return walls;
+}
+
 /* Spacing of the fluid, period and walls of the domain, for the short-range forces; options given for the spacing win. */
 PetscErrorCode AppBuildShortRange(App *app)
 {
-  const AppScene *s = &app->scene;
-  PetscReal dp, period[3] = {0, 0, 0};
+  PetscReal dp, period[3], x[6][3], n[6][3];
+  const PetscInt walls = domain(app, period, x, n);
 
   PetscFunctionBegin;
   if (!app->sph) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SphGetSpacing(app->sph, &dp));
   PetscCall(RigidSetShortRangeSpacing(app->rigid, dp));
-  for (PetscInt a = 0; a < app->dim; a++)
-    if (s->periodic[a]) period[a] = s->hi[a] - s->lo[a];
   PetscCall(RigidSetPeriod(app->rigid, period));
-  for (int f = 0; f < 2 * app->dim; f++) {
-    const PetscReal *x = f % 2 ? s->hi : s->lo;
-    PetscReal n[3] = {0, 0, 0};
-    n[f / 2] = f % 2 ? -1 : 1;
-    if (s->wall[f]) PetscCall(RigidAddWall(app->rigid, x, n));
-  }
+  for (PetscInt w = 0; w < walls; w++) PetscCall(RigidAddWall(app->rigid, x[w], n[w]));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for the ANCF beams, in 3D, when bodies and beams are there. */
+PetscErrorCode AppBuildShortBeams(App *app)
+{
+  PetscReal period[3], x[6][3], n[6][3];
+  const PetscInt walls = domain(app, period, x, n);
+  const AppScene *s = &app->scene;
+  PetscErrorCode ierr;
+  int i, j;
+
+  PetscFunctionBegin;
+  if (!app->ancf || app->dim != 3) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CoupleShortCreate(PETSC_COMM_SELF, app->ancf, app->rigid, &app->shortrange));
+  PetscCall(CoupleShortSetFromOptions(app->shortrange));
+  PetscCall(CoupleShortSetPeriod(app->shortrange, period));
+  for (PetscInt w = 0; w < walls; w++) PetscCall(CoupleShortAddWall(app->shortrange, x[w], n[w]));
+  ierr = CoupleShortSetUp(app->shortrange);
+  if (ierr && app->errors) {
+    const char *text = app->errors->message;
+    if (sscanf(text, "beam %d and beam %d", &i, &j) == 2 && i < s->nbeams && j < s->nbeams)
+      AppDoing(app, "beams '%.40s' and '%.40s'", s->beams[i].name, s->beams[j].name);
+    else if (sscanf(text, "beam %d and body %d", &i, &j) == 2 && i < s->nbeams && j < s->nbodies)
+      AppDoing(app, "beam '%.40s' and body '%.40s'", s->beams[i].name, s->bodies[j].name);
+    else if (sscanf(text, "beam %d", &i) == 1 && i < s->nbeams)
+      AppDoing(app, "beam '%.40s'", s->beams[i].name);
+  }
+  PetscFunctionReturn(ierr);
 }
 
 /* Position and velocity (m, m/s) of the last end of a lumped beam. */

@@ -53,6 +53,13 @@ PetscErrorCode CoupleSetSph(Couple c, Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CoupleSetShort(Couple c, CoupleShort sr)
+{
+  PetscFunctionBegin;
+  c->shortrange = sr;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CoupleAddSurface(Couple c, CoupleSurface surface)
 {
   PetscFunctionBegin;
@@ -153,6 +160,7 @@ PetscErrorCode CoupleView(Couple c, PetscViewer viewer)
       "Coupling: %" PetscInt_FMT " surfaces, couple_transfer %s, couple_dt_max %g s, couple_iterations %" PetscInt_FMT
       ", couple_tolerance %g, couple_relaxation %g\n",
       c->n, CoupleTransferTypes[c->transfer], (double)c->dtmax, c->maxiterations, (double)c->tolerance, (double)c->relaxation));
+  if (c->shortrange) PetscCall(CoupleShortView(c->shortrange, viewer));
   for (PetscInt i = 0; i < c->n; i++)
     if (c->slot[i].surface->ops.view) PetscCall((*c->slot[i].surface->ops.view)(c->slot[i].surface, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,8 +195,9 @@ static void MarkerTotals(const CoupleSlot *s, CoupleAudit *audit)
   }
 }
 
-/* Marker forces in s->f to every structure; s->x, s->v still hold the marker state that they act on. */
-static PetscErrorCode Transfer(Couple c)
+/* Marker forces in s->f and short-range forces to every structure for a step h (s); s->x, s->v still hold the marker state that
+   the marker forces act on. */
+static PetscErrorCode Transfer(Couple c, PetscReal h)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Transfer, 0, 0, 0, 0));
@@ -209,12 +218,13 @@ static PetscErrorCode Transfer(Couple c)
     }
     s->audit = audit;
   }
+  if (c->shortrange) PetscCall(CoupleShortApply(c->shortrange, h));
   PetscCall(PetscLogEventEnd(COUPLE_Transfer, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Forces of the fluid, but f for the surfaces that are not held when it is given. */
-PetscErrorCode CoupleApplyForces(Couple c, const PetscReal *f)
+PetscErrorCode CoupleApplyForces(Couple c, PetscReal h, const PetscReal *f)
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < c->n; i++) {
@@ -227,7 +237,7 @@ PetscErrorCode CoupleApplyForces(Couple c, const PetscReal *f)
     } else
       PetscCall(SphGetBoundaryForce(c->sph, s->group, s->f));
   }
-  PetscCall(Transfer(c));
+  PetscCall(Transfer(c, h));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -236,6 +246,7 @@ PetscErrorCode CoupleAdvanceSurfaces(Couple c, PetscReal t)
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Advance, 0, 0, 0, 0));
   for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.advance)(c->slot[i].surface, t));
+  if (c->shortrange) PetscCall(CoupleShortRemove(c->shortrange));
   PetscCall(PetscLogEventEnd(COUPLE_Advance, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -279,7 +290,7 @@ PetscErrorCode CoupleStep(Couple c, PetscReal tmax, PetscReal *taken)
   } else {
     PetscCall(CoupleMoveMarkers(c, 0.5 * dt));
     PetscCall(SphStepEnd(c->sph));
-    PetscCall(CoupleApplyForces(c, NULL));
+    PetscCall(CoupleApplyForces(c, dt, NULL));
     PetscCall(CoupleAdvanceSurfaces(c, t + dt));
   }
   PetscCall(CoupleMoveMarkers(c, 0.0));

@@ -64,6 +64,14 @@ PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
       b->support[k] += dt * support[k];
     }
   }
+  if (c->shortrange) { /* a body's weight above holds what beams do to it */
+    PetscReal held[3], bodies[3];
+    PetscCall(CoupleShortGetForces(c->shortrange, NULL, NULL, held, bodies));
+    for (int k = 0; k < 3; k++) {
+      b->wall[k] += dt * held[k];
+      b->body[k] -= dt * bodies[k];
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -36,6 +36,7 @@ struct _p_Couple {
   PetscInt maxiterations, iterations,
       unconverged; /* of the strong coupling: allowed per step; made; steps that missed the tolerance */
   PetscReal tolerance, relaxation;
+  CoupleShort shortrange;    /* NULL: none */
   CoupleIteration iteration; /* made at the first iterated step */
   PetscReal p0[3];           /* momentum at set-up */
   PetscReal mass;            /* of the fluid, kg; for `left` markers gone */
@@ -48,8 +49,9 @@ extern PetscLogEvent COUPLE_Kinematics, COUPLE_Transfer, COUPLE_Advance;
 /* couple.c: every surface's markers at the structures' own time plus ahead (s), to the fluid. */
 extern PetscErrorCode CoupleMoveMarkers(Couple couple, PetscReal ahead);
 
-/* couple.c: forces (3 per marker of the surfaces that are not held) onto the structures; every structure to time t. */
-extern PetscErrorCode CoupleApplyForces(Couple couple, const PetscReal *f);
+/* couple.c: forces (3 per marker of the surfaces that are not held) onto the structures for a step h (s); every
+   structure to time t. */
+extern PetscErrorCode CoupleApplyForces(Couple couple, PetscReal h, const PetscReal *f);
 extern PetscErrorCode CoupleAdvanceSurfaces(Couple couple, PetscReal t);
 
 /* couplelink.c */

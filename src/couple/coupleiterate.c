@@ -87,7 +87,7 @@ static PetscErrorCode Map(Couple c, PetscReal t, PetscReal dt, const PetscReal *
   CoupleIteration it = c->iteration;
 
   PetscFunctionBegin;
-  PetscCall(CoupleApplyForces(c, F));
+  PetscCall(CoupleApplyForces(c, dt, F));
   PetscCall(CoupleAdvanceSurfaces(c, t + dt));
   PetscCall(CoupleMoveMarkers(c, -0.5 * dt));
   PetscCall(SphStepEvaluate(c->sph));
@@ -159,7 +159,7 @@ PetscErrorCode CoupleIterate(Couple c, PetscReal t, PetscReal dt)
   PetscCall(Report(c, t, residual));
   PetscCall(FluidForces(c, it->F)); /* the last G(F), which the fluid's second stage uses */
   PetscCall(States(c, PETSC_TRUE));
-  PetscCall(CoupleApplyForces(c, it->F));
+  PetscCall(CoupleApplyForces(c, dt, it->F));
   PetscCall(CoupleAdvanceSurfaces(c, t + dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

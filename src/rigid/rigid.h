@@ -299,6 +299,20 @@ FROND_EXTERN PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3
   point of its face, m. normal: 3, into the free side, of any length > 0.
 */
 FROND_EXTERN PetscErrorCode RigidAddWall(Rigid rigid, const PetscReal x[3], const PetscReal normal[3]);
+/* What other solvers need for short-range forces on a body. body: number. radius: of a sphere about its centre that holds it, m.
+ */
+FROND_EXTERN PetscErrorCode RigidGetRadius(Rigid rigid, PetscInt body, PetscReal *radius);
+/*
+  Gap between a point and the surface of a body where it is now. body: number. x: 3, the point, m. gap: m, negative inside. n: 3,
+  unit normal of the surface there, space frame, or NULL.
+*/
+FROND_EXTERN PetscErrorCode RigidGetGap(Rigid rigid, PetscInt body, const PetscReal x[3], PetscReal *gap, PetscReal n[3]);
+/*
+  Inverse effective mass of a body at a point of action: n.dv per unit impulse along n; 0 for bodies that are not free. body:
+  number. n: 3, unit vector. r: 3, from the centre of mass, m. w: 1/kg.
+*/
+FROND_EXTERN PetscErrorCode RigidGetInverseMass(Rigid rigid, PetscInt body, const PetscReal n[3], const PetscReal r[3],
+                                                PetscReal *w);
 /*
   Refuse bodies that overlap, naming both, and free bodies that overlap a wall; joined bodies, and pairs of which none is free,
   are left alone. spacing: distance of surface markers, m, as RigidSetShortRangeSpacing().

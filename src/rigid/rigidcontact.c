@@ -310,6 +310,39 @@ static PetscReal InverseMass(const RigidBody *b, const PetscReal n[3], const Pet
   return w;
 }
 
+static PetscErrorCode CheckNumber(Rigid rigid, PetscInt body)
+{
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup && body >= 0 && body < rigid->n, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT ": there are %" PetscInt_FMT " bodies%s", body, rigid->n,
+             rigid->setup ? "" : "; call RigidSetUp() first");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetRadius(Rigid rigid, PetscInt body, PetscReal *radius)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckNumber(rigid, body));
+  *radius = BoundingRadius(&rigid->body[body].spec, rigid->dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetGap(Rigid rigid, PetscInt body, const PetscReal x[3], PetscReal *gap, PetscReal n[3])
+{
+  PetscFunctionBegin;
+  PetscCall(CheckNumber(rigid, body));
+  *gap = GapTo(rigid, body, rigid->body[body].X, x, n);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetInverseMass(Rigid rigid, PetscInt body, const PetscReal n[3], const PetscReal r[3], PetscReal *w)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckNumber(rigid, body));
+  *w = InverseMass(&rigid->body[body], n, r);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static void AddVelocity(const RigidBody *b, const PetscReal r[3], PetscReal sign, PetscReal v[3])
 {
   PetscReal w[3], x[3];

@@ -69,6 +69,26 @@ PetscReal ShortRangeMarkers(const ShortRange *p, PetscReal h, PetscReal s)
   return 1.5 * PETSC_PI * p->viscosity * h * h * GapFactor(p, s);
 }
 
+PetscReal ShortRangeLine(const ShortRange *p, PetscReal R, PetscReal s)
+{
+  const PetscReal g = PetscMax(s, p->roughness), d = p->cutoff;
+  PetscReal factor;
+  if (p->viscosity == 0. || s >= d) return 0.;
+  factor = 1. / (g * PetscSqrtReal(g)) - 1. / (d * PetscSqrtReal(d));
+  if (!p->kink) factor -= 1.5 * (d - g) / (d * d * PetscSqrtReal(d));
+  return 3. * PetscSqrtReal(2.) * PETSC_PI * p->viscosity * R * PetscSqrtReal(R) * factor;
+}
+
+/* Damping ratio of the linear spring with restitution e: -ln e/sqrt(ln^2 e + pi^2). */
+void ShortRangeLineContact(const ShortRange *p, PetscReal m, PetscReal s, PetscReal *stiffness, PetscReal *damping)
+{
+  const PetscReal d = p->roughness - s, l = PetscLogReal(p->restitution), x = PetscMin(1., 10. * d / p->roughness);
+  *stiffness = *damping = 0.;
+  if (p->modulus == 0. || d <= 0.) return;
+  *stiffness = .5 * p->modulus;
+  *damping = x * x * (3. - 2. * x) * -2. * l / PetscSqrtReal(l * l + PETSC_PI * PETSC_PI) * PetscSqrtReal(m * *stiffness);
+}
+
 PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, PetscReal s, PetscReal dsdt)
 {
   const PetscReal d = p->roughness - s, k = 4. / 3. * p->modulus * PetscSqrtReal(R), l = PetscLogReal(p->restitution);

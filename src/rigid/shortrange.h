@@ -47,6 +47,21 @@ FROND_EXTERN PetscReal ShortRangeSphere(const ShortRange *p, PetscReal ai, Petsc
 */
 FROND_EXTERN PetscReal ShortRangeMarkers(const ShortRange *p, PetscReal h, PetscReal s);
 /*
+  Resistance per length (N s/m^2) of a cylinder facing another one or a plane, the leading term 3 sqrt(2) pi mu (R/s)^(3/2) of
+  Jeffrey and Onishi, smoothed at the cutoff like the others. Summed along the axis of one of two cylinders crossing at an angle
+  phi, s the gap to the other, it gives 12 pi mu R^(3/2) sqrt(ai + aj)/(s sin phi), the
+  solution of Reynolds' equation to leading order, at every angle. p: parameters.
+  R: 1/(1/ai + 1/aj), m. s: gap, m. Source: Jeffrey, Onishi, Quart. J. Mech. Appl. Math. 34 (1981).
+*/
+FROND_EXTERN PetscReal ShortRangeLine(const ShortRange *p, PetscReal R, PetscReal s);
+/*
+  Repulsion per length of a cylinder, f = stiffness d - damping ds/dt (N/m), d = s_min - s: half of E* as stiffness makes the sum
+  over two equal cylinders that cross at right angles Hertz's 4/3 E* sqrt(a) d^(3/2). The damping sets in over a tenth of s_min;
+  the restitution is that of bodies that meet lengthwise. p: parameters. m: reduced mass per length, kg/m. s: gap, m. stiffness:
+  N/m^2. damping: N s/m^2; both 0 without contact.
+*/
+FROND_EXTERN void ShortRangeLineContact(const ShortRange *p, PetscReal m, PetscReal s, PetscReal *stiffness, PetscReal *damping);
+/*
   Repulsion (N), 0 or more. p: parameters. R: 1/(1/ai + 1/aj), m. m: reduced mass, kg. s: gap, m. dsdt: its rate, m/s. Source:
   Tsuji et al. (1992); Antypov and Elliott (2011).
 */
