@@ -18,6 +18,10 @@ frond_app_test(app_sections unit)
 frond_app_test(app_checkpoint unit)
 frond_app_test(app_motion unit)
 frond_app_test(app_links unit)
+frond_app_test(app_faults unit)
+add_test(NAME app_kills COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
+  ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/app_faults.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_kills ${PROJECT_SOURCE_DIR} 50)
+set_tests_properties(app_kills PROPERTIES LABELS validation-long TIMEOUT 1500 SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_WAIT_POLICY=PASSIVE")
 frond_app_test(app_rigid validation)
 frond_app_test(app_examples validation)
 

@@ -19,8 +19,9 @@ enum { APP_EXIT_OK = 0, APP_EXIT_USER = 1, APP_EXIT_NUMERICAL = 2, APP_EXIT_IO =
 
 /* apperror.c: one clear line for an error, whatever depth it comes from. */
 typedef struct {
-  PetscBool trace; /* print PETSc's trace too */
-  PetscBool files; /* HDF5 holds a file that it could not write */
+  PetscBool trace;  /* print PETSc's trace too */
+  PetscBool memory; /* there is not enough */
+  PetscBool files;  /* HDF5 holds a file that it could not write */
   char message[2048];
   char context[128]; /* what the command was doing, put before the message; empty for nothing */
 } AppErrors;
@@ -165,7 +166,6 @@ PetscErrorCode AppBuild(App *app);
 PetscErrorCode AppView(const App *app, FILE *out);
 PetscErrorCode AppDestroy(App *app);
 PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt);
-PetscErrorCode AppInjectFault(App *app);
 /* Position and velocity (m, m/s) at material coordinate s (m) of a beam, and r,x. */
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3]);
 
@@ -174,6 +174,11 @@ PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3]
   do {                                                                                                                           \
     if ((app)->errors) snprintf((app)->errors->context, sizeof((app)->errors->context), __VA_ARGS__);                            \
   } while (0)
+
+/* appfault.c: values that are not finite. */
+enum { FAULT_X, FAULT_V, FAULT_RHO, FAULT_BEAM_X, FAULT_BEAM_V, FAULT_BODY_X, FAULT_BODY_V };
+PetscErrorCode AppInjectFault(App *app);
+PetscErrorCode AppTraceFault(App *app, PetscInt failed, PetscReal tmax, size_t len, char text[]);
 
 /* appstate.c: the state of a run as named arrays in memory. */
 typedef struct {
@@ -265,8 +270,9 @@ PetscErrorCode AppOutputCheck(const char dir[]);
 PetscErrorCode AppOutputCreate(const App *app, AppOutput *out);
 PetscErrorCode AppOutputWrite(AppOutput out, App *app);
 PetscErrorCode AppOutputLast(AppOutput out, PetscReal *t, const char **file, PetscInt *frames);
-/* The frames so far. After a load those of the folder that are later are removed, and the index is written anew. */
+/* The frames so far; after a load AppOutputCut() removes those of the folder that are later and writes the index anew. */
 PetscErrorCode AppOutputMoveState(AppOutput out, FrondState *s);
+PetscErrorCode AppOutputCut(AppOutput out);
 PetscErrorCode AppOutputDestroy(AppOutput *out);
 
 /* xdmf.c */
@@ -300,8 +306,9 @@ typedef struct _AppHistory *AppHistory;
 PetscErrorCode AppHistoryCreate(App *app, AppHistory *history);
 PetscErrorCode AppHistoryRecord(AppHistory history, App *app, PetscReal dt);
 PetscErrorCode AppHistoryDestroy(AppHistory *history);
-/* The rows so far. After a load history.csv is cut back to them. */
+/* The rows so far; after a load AppHistoryCut() cuts history.csv behind them. */
 PetscErrorCode AppHistoryMoveState(AppHistory history, App *app, FrondState *s);
+PetscErrorCode AppHistoryCut(AppHistory history);
 /* Rows to the disk. */
 PetscErrorCode AppHistorySync(AppHistory history);
 /* Largest values seen in the rows so far: speed (m/s), compression (-), momentum residual and scale (kg m/s), audit losses. */

@@ -304,33 +304,6 @@ PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The option -fault_nan: before the chosen step one value of one marker becomes NaN. */
-PetscErrorCode AppInjectFault(App *app)
-{
-  const AppScene *s = &app->scene;
-  PetscInt n = app->nfluid + app->nboundary;
-  PetscReal *value;
-  SphFields f;
-
-  PetscFunctionBegin;
-  if (s->faultstep < 0 || app->step != s->faultstep) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(s->faultmarker < n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "fault_nan: marker %" PetscInt_FMT " must be below %" PetscInt_FMT "", s->faultmarker, n);
-  PetscCall(PetscMalloc1(3 * (size_t)n, &value));
-  PetscCall(PetscMemzero(&f, sizeof(f)));
-  if (s->faultfield == 0)
-    f.x = value;
-  else if (s->faultfield == 1)
-    f.v = value;
-  else
-    f.rho = value;
-  PetscCall(SphGetFields(app->sph, &f));
-  value[s->faultfield == 2 ? s->faultmarker : 3 * s->faultmarker] = (PetscReal)NAN;
-  PetscCall(SphSetFields(app->sph, &f));
-  PetscCall(PetscFree(value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal v[3], PetscReal rx[3])
 {
   const PetscReal *e, *edot;

@@ -9,8 +9,14 @@ static PetscErrorCode error_handler(MPI_Comm comm, int line, const char *func, c
 
   if (type == PETSC_ERROR_INITIAL) {
     const char *text = (mess && mess[0]) ? mess : NULL;
+    errors->memory = (PetscBool)(!strcmp(func, "PetscMallocAlign") || !strcmp(func, "PetscReallocAlign"));
     if (!text) PetscErrorMessage(ierr, &text, NULL);
-    snprintf(errors->message, sizeof(errors->message), "%s", text ? text : "unknown error");
+    if (errors->memory) /* PETSc 3.18 swaps its arguments: the code is a line, the text the function that asked */
+      snprintf(errors->message, sizeof(errors->message),
+               "out of memory (%s): use fewer markers (a larger sph_dp), fewer elements, or a machine with more",
+               text ? text : "?");
+    else
+      snprintf(errors->message, sizeof(errors->message), "%s", text ? text : "unknown error");
     for (char *c = errors->message; *c; c++)
       if (*c == '\n' || *c == '\r') *c = ' ';
   }
@@ -71,6 +77,7 @@ static void print_line(const AppErrors *errors)
 int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr, PetscBool quiet)
 {
   if (!quiet) print_line(errors);
+  if (errors->memory) return APP_EXIT_USER;
   switch ((int)ierr) {
   case PETSC_ERR_FP:
   case PETSC_ERR_NOT_CONVERGED:

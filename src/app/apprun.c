@@ -136,7 +136,10 @@ static PetscErrorCode restart(Run *run)
   }
   if (s->histevery > 0 && run->nexthistory > (run->app->t + s->histevery) * (1 + 1e-9))
     run->nexthistory = run->app->t + s->histevery;
+  /* later checkpoints go first: were the run killed in between, the one that is left would still fit the other files */
   PetscCall(AppCheckpointPrune(s->outdir, run->app->step, -1));
+  PetscCall(AppOutputCut(run->output));
+  PetscCall(AppHistoryCut(run->history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -196,10 +199,19 @@ static PetscErrorCode keep_good(Run *run)
 {
   PetscReal start = AppWallTime();
   CheckpointInfo info = {0, 0, NULL};
+  PetscErrorCode ierr;
 
   PetscFunctionBegin;
   if (!run->exact || start < run->goodnext) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(save_state(run, &run->state, &info));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  ierr = save_state(run, &run->state, &info);
+  PetscCall(PetscPopErrorHandler());
+  if (ierr) { /* there is no memory for two states: the run itself may go on */
+    run->goodnext = (PetscReal)INFINITY;
+    PetscCall(AppStateDestroy(&run->state));
+    PetscCall(AppStateDestroy(&run->good));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!AppStateNotFinite(&run->state)) {
     const AppState swap = run->good;
     run->good = run->state;
@@ -332,6 +344,29 @@ static void save_good(Run *run, PetscErrorCode ierr)
   (void)PetscPopErrorHandler();
 }
 
+/*
+  After a failure: add to the error's line where the first value that is not finite came up. With one found, whatever complained
+  of it, the error is a numerical one.
+*/
+static PetscErrorCode trace_fault(Run *run, PetscErrorCode ierr)
+{
+  AppErrors *errors = run->app->errors, first = *errors;
+  const PetscInt failed = run->app->step;
+  char text[256] = "";
+  size_t n;
+
+  if (!run->good.n || (int)ierr == PETSC_ERR_FILE_WRITE || (int)ierr == PETSC_ERR_FILE_OPEN) return ierr;
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  if (!AppMoveState(run->app, AppStateBegin(&run->good, FROND_STATE_LOAD)))
+    (void)AppTraceFault(run->app, failed, run->app->scene.tend, sizeof(text), text);
+  (void)PetscPopErrorHandler();
+  *errors = first;
+  n = strlen(errors->message);
+  if (!text[0]) return ierr;
+  snprintf(errors->message + n, sizeof(errors->message) - n, " [%s]", text);
+  return PETSC_ERR_FP;
+}
+
 /* After a failed step: say what is safe. The history's rows and all frames are on disk already. */
 static void report_safe(const Run *run)
 {
@@ -359,6 +394,7 @@ PetscErrorCode AppRun(App *app, int *exitcode)
   if (ierr) {
     report_safe(&run);
     save_good(&run, ierr);
+    ierr = trace_fault(&run, ierr);
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, NULL); /* the first error is the one to report */
     (void)AppHistoryDestroy(&run.history);
     (void)AppOutputDestroy(&run.output);

@@ -141,6 +141,7 @@ static PetscErrorCode write_h5(const char file[], const AppState *s, const Check
 static int checkpoint_step(const char name[], long long *step)
 {
   int end = 0;
+
   return sscanf(name, "checkpoint_%lld.h5%n", step, &end) == 1 && end && !name[end];
 }
 
@@ -152,11 +153,17 @@ PetscErrorCode AppCheckpointPrune(const char dir[], PetscInt newest, PetscInt ke
   PetscInt n = 0, alloc = 0;
   PetscInt64 *steps = NULL;
   long long step;
+  int end = 0;
   DIR *d = opendir(dir);
 
   PetscFunctionBegin;
   if (!d) PetscFunctionReturn(PETSC_SUCCESS);
   while ((entry = readdir(d))) {
+    if (keep < 0 && sscanf(entry->d_name, "checkpoint_%lld.h5.par%n", &step, &end) == 1 && end &&
+        !strcmp(entry->d_name + end, "t")) {
+      snprintf(path, sizeof(path), "%s/%s", dir, entry->d_name); /* a run that was killed left it */
+      (void)unlink(path);
+    }
     if (!checkpoint_step(entry->d_name, &step) || (keep >= 0 ? step > newest : step <= newest)) continue;
     if (n == alloc) {
       alloc = 2 * alloc + 16;

@@ -1,17 +1,20 @@
 /* h5write.c - HDF5 files whose datasets carry `unit` and `description`; any failure is PETSC_ERR_FILE_WRITE. */
 #include "app.h"
+#include <errno.h>
 #include <hdf5.h>
 #include <string.h>
 
 _Static_assert(sizeof(hid_t) == sizeof(int64_t), "HDF5 1.10 or newer is needed");
 
 #define H5Check(ok, what, name)                                                                                                  \
-  PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s '%s' (HDF5): is the disk full?", what, name)
+  PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s '%s' (HDF5): %s", what, name,                           \
+             errno ? strerror(errno) : "is the disk full?")
 
 PetscErrorCode AppH5Create(const char file[], int64_t *id)
 {
   PetscFunctionBegin;
   H5Check(H5Eset_auto2(H5E_DEFAULT, NULL, NULL) >= 0, "file", file); /* errors are reported by our own line */
+  errno = 0;
   *id = H5Fcreate(file, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   H5Check(*id >= 0, "file", file);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -23,6 +26,7 @@ PetscErrorCode AppH5Close(int64_t id, const char file[])
   herr_t flushed, closed;
 
   PetscFunctionBegin;
+  errno = 0;
   flushed = H5Fflush(id, H5F_SCOPE_GLOBAL);
   closed = H5Fclose(id);
   H5Check(flushed >= 0 && closed >= 0, "file", file);

@@ -18,6 +18,7 @@ struct _AppHistory {
   char dir[PETSC_MAX_PATH_LEN];
   FILE *csv;
   PetscBool known;                         /* the columns are made */
+  off_t end;                               /* of the rows of a checkpoint */
   PetscInt ncols, acols, nrows, arows, at; /* at: the column being filled */
   Column *column;
   PetscReal *row, *rows; /* ncols; nrows x ncols */
@@ -322,20 +323,18 @@ static PetscBool parse_line(AppHistory h, char *line, PetscBool header)
   return PETSC_TRUE;
 }
 
-/* Read `rows` rows of the run so far and cut the file behind them; a folder without a history begins one. */
-static PetscErrorCode cut_back(AppHistory h, PetscInt rows, PetscReal tlast)
+/* Read `rows` rows of the run so far; a folder without a history begins one. */
+static PetscErrorCode read_rows(AppHistory h, PetscInt rows, PetscReal tlast)
 {
   char *line = NULL;
   size_t len = 0;
   PetscBool good;
-  off_t end;
 
   PetscFunctionBegin;
   rewind(h->csv);
+  h->end = 0;
   if (getline(&line, &len, h->csv) < 0 || !rows) {
     free(line);
-    PetscCheck(!ftruncate(fileno(h->csv), 0), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot cut '%s/history.csv': %s", h->dir,
-               strerror(errno));
     if (rows) printf("'%s' has no history of the time before: it begins here\n", h->dir);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -347,10 +346,15 @@ static PetscErrorCode cut_back(AppHistory h, PetscInt rows, PetscReal tlast)
              "'%s/history.csv' is not that of the checkpoint, which has %" PetscInt_FMT
              " rows up to t = %.9g s: set output_dir to the run's own folder or to a new one",
              h->dir, rows, (double)tlast);
-  end = ftello(h->csv);
-  PetscCheck(end >= 0 && !ftruncate(fileno(h->csv), end), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
-             "cannot cut '%s/history.csv': %s", h->dir, strerror(errno));
-  fseeko(h->csv, 0, SEEK_END);
+  h->end = ftello(h->csv);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppHistoryCut(AppHistory h)
+{
+  PetscFunctionBegin;
+  PetscCheck(h->end >= 0 && !ftruncate(fileno(h->csv), h->end) && !fseeko(h->csv, 0, SEEK_END), PETSC_COMM_SELF,
+             PETSC_ERR_FILE_WRITE, "cannot cut '%s/history.csv': %s", h->dir, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -366,7 +370,7 @@ PetscErrorCode AppHistoryMoveState(AppHistory h, App *app, FrondState *s)
   FrondMoveReal(s, "run/history_worst", (PetscReal *)&worst, sizeof(worst) / sizeof(PetscReal));
   if (s->way == FROND_STATE_LOAD) {
     PetscCall(fill_row(h, app, 0)); /* for the columns */
-    PetscCall(cut_back(h, rows, tlast));
+    PetscCall(read_rows(h, rows, tlast));
     h->worst = worst;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -148,7 +148,7 @@ static int petsc_arguments(int argc, char **argv, char **out)
 
 int main(int argc, char **argv)
 {
-  AppErrors errors = {PETSC_FALSE, PETSC_FALSE, "", ""};
+  AppErrors errors = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, "", ""};
   AppKnown known = {0, 0, NULL, PETSC_FALSE};
   int exitcode = 0, petscargc;
   char **petscargv = malloc(((size_t)argc + 1) * sizeof(char *)), **list = petscargv;

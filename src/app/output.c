@@ -380,7 +380,6 @@ static PetscErrorCode cut_frames(AppOutput out)
 PetscErrorCode AppOutputMoveState(AppOutput out, FrondState *s)
 {
   XdmfSeries *series = &out->series;
-  char name[32];
 
   PetscFunctionBegin;
   FrondMoveInt(s, "run/frames", &series->nframes, 1);
@@ -392,7 +391,15 @@ PetscErrorCode AppOutputMoveState(AppOutput out, FrondState *s)
     PetscCall(PetscRealloc((size_t)out->alloc * sizeof(PetscReal), &series->time));
   }
   FrondMoveReal(s, "run/frame_times", series->time, series->nframes);
-  if (s->way != FROND_STATE_LOAD) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppOutputCut(AppOutput out)
+{
+  XdmfSeries *series = &out->series;
+  char name[32] = "";
+
+  PetscFunctionBegin;
   PetscCall(cut_frames(out));
   for (series->first = series->nframes; series->first > 0; series->first--) {
     AppFrameName(series->first - 1, sizeof(name), name);

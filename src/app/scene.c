@@ -13,7 +13,7 @@ static const char *const ends[] = {"free", "pin", "clamp", NULL};
 static const char *const shapes[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule", "mesh", NULL};
 static const char *const motions[] = {"fixed", "prescribed", "free", NULL};
 static const char *const locks[] = {"x", "y", "z", "rx", "ry", "rz", NULL};
-static const char *const faults[] = {"x", "v", "rho", NULL};
+static const char *const faults[] = {"x", "v", "rho", "beam_x", "beam_v", "body_x", "body_v", NULL};
 
 #define COUNT(table) ((PetscInt)(sizeof(table) / sizeof((table)[0])))
 
@@ -107,9 +107,10 @@ static PetscErrorCode read_fault(AppScene *s, const char text[])
   PetscCheck(part[0] && part[1] && part[2], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: '%s' is not field,marker,step",
              text);
   for (s->faultfield = 0; faults[s->faultfield] && strcmp(faults[s->faultfield], part[0]);) s->faultfield++;
-  PetscCheck(faults[s->faultfield], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: field '%s' is none of x, v, rho", part[0]);
+  PetscCheck(faults[s->faultfield], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "fault_nan: field '%s' is none of x, v, rho, beam_x, beam_v, body_x, body_v", part[0]);
   s->faultmarker = (PetscInt)strtol(part[1], &end, 10);
-  PetscCheck(!*end && s->faultmarker >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: marker '%s' must be 0 or more",
+  PetscCheck(!*end && s->faultmarker >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: number '%s' must be 0 or more",
              part[1]);
   s->faultstep = (PetscInt)strtol(part[2], &end, 10);
   PetscCheck(!*end && s->faultstep >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: step '%s' must be 0 or more", part[2]);
@@ -138,7 +139,9 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
       {OPT_INT, "checkpoint_keep", "Checkpoints kept, the last ones", &s->checkpointkeep, NULL, NULL},
       {OPT_STRING, "restart", "Checkpoint to go on from, or a folder whose last one is taken", s->restart, NULL, NULL},
       {OPT_BOOL, "restart_changed", "Go on although options differ from those of the checkpoint", &s->restartchanged, NULL, NULL},
-      {OPT_STRING, "fault_nan", "For tests: put NaN in field,marker before step (x|v|rho,number,number)", fault, NULL, NULL},
+      {OPT_STRING, "fault_nan",
+       "For tests: put NaN in field,number,step before that step (x|v|rho of a marker, beam_x|beam_v of a node, body_x|body_v)",
+       fault, NULL, NULL},
   };
 
   PetscFunctionBegin;
