@@ -507,6 +507,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree(a->permanent));
   PetscCall(PetscFree(a->moment));
   PetscCall(PetscFree4(a->motion, a->resta, a->restm, a->restv));
+  PetscCall(PetscFree2(a->stage, a->impulse));
   PetscCall(PetscFree2(a->spin, a->spinsum));
   PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));

@@ -54,6 +54,8 @@ FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, Pet
   start. how: ANCF_END_PIN or ANCF_END_CLAMP.
 */
 FROND_EXTERN PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how);
+/* Support of a node. beam: number. node: of the beam. how: free, pin or clamp, from spec or AncfFixNode(). */
+FROND_EXTERN PetscErrorCode AncfGetSupport(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd *how);
 /* How a joint holds nodes together. Ball: one position. Rigid: one position, and the tangents turn together. */
 typedef enum { ANCF_JOINT_BALL, ANCF_JOINT_RIGID } AncfJointType;
 /*
@@ -67,6 +69,9 @@ FROND_EXTERN PetscErrorCode AncfAddJoint(Ancf ancf, AncfJointType type, PetscInt
                                          PetscInt *joint);
 /* n: number of joints. */
 FROND_EXTERN PetscErrorCode AncfGetNumJoints(Ancf ancf, PetscInt *n);
+/* One node of a joint. joint: number. k: which of its nodes, from 0. n: nodes of the joint. beam, node: this one. Any may be
+ * NULL. */
+FROND_EXTERN PetscErrorCode AncfGetJoint(Ancf ancf, PetscInt joint, PetscInt k, PetscInt *n, PetscInt *beam, PetscInt *node);
 /*
   Generalised force of a joint on one of its nodes now. joint: number. k: which of its nodes, from 0. f: 6, position part in N,
   gradient part in N m.
@@ -249,6 +254,19 @@ FROND_EXTERN PetscErrorCode AncfGetDissipation(Ancf ancf, PetscReal *power);
   rdot, kg m^2/s.
 */
 FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3]);
+/*
+  Mean of the supports' forces over the last AncfAdvance(), as the integrator's equations have them: unlike those at the ends of
+  a step they stay smooth where it does not resolve the fastest modes. Known for alpha2, theta, beuler and bdf only. offset: they
+  belong to the middle of that time plus this part of it; below 0: not known. f: nodes x 6, N and N m.
+*/
+FROND_EXTERN PetscErrorCode AncfGetMeanReactions(Ancf ancf, PetscReal *offset, PetscReal f[]);
+/*
+  Balance of every beam now, moments about the origin, beams x 3 each. p: kg m/s. L: kg m^2/s. F: N, and T: N m: of weight,
+  loads, moments and damping of the mass; without supports and joints.
+*/
+FROND_EXTERN PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscReal L[], PetscReal F[], PetscReal T[]);
+/* As AncfGetNodeReaction() for all nodes at once. f: nodes x 6, N and N m, 0 where there is no support. */
+FROND_EXTERN PetscErrorCode AncfGetReactions(Ancf ancf, PetscReal f[]);
 /* f: 3, force of all supports on the beams, N: the residual of the equations of motion over supported positions. */
 FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
 /* f: 3, gravity less buoyancy on all beams, N. */

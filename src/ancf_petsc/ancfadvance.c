@@ -109,6 +109,8 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   ancf->restart = ancf->given = PETSC_FALSE;
   PetscCall(AncfStateStore(ancf, ancf->backup));
   PetscCall(TSSetTimeStep(ancf->ts, dt));
+  if (ancf->stage) PetscCall(PetscArrayzero(ancf->impulse, 6 * ancf->nnodes));
+  ancf->advanced = t - t0;
   if (ancf->form == ANCF_FORM_SYMPLECTIC) { /* sums its stages' times and matches no final time: count steps instead */
     PetscInt steps;
 

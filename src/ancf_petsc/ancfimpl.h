@@ -121,13 +121,18 @@ struct _p_Ancf {
   PetscReal *saved, savedtime, savedstep; /* the same for AncfSaveState(), NULL before */
   PetscReal *history, *eprev, *vprev;     /* acceleration carried by TSALPHA2, e and v before the step; NULL with other types */
   Vec A, E0, V0, work;                    /* the same as vectors, and a work vector */
+  PetscReal stagestart;                   /* s */
+  PetscBool interpolates;                 /* TS takes stages as linear between the ends of a step */
   PetscReal stagedt;                      /* step of the last stage, s */
   PetscReal nominal;                      /* step of a TS that does not adapt, s; 0: it adapts */
   PetscBool given;                        /* history was set by the user */
   PetscBool restart, priming;             /* TS must start afresh; AncfAlphaStart() is at work */
   PetscBool exact;                        /* e, v and history are all that TS remembers, see AncfPack() */
-  PetscInt uncounted[3]; /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
-  PetscReal step;        /* what an adaptive TS wants next, s; 0: unknown */
+  PetscInt uncounted[3];      /* steps, Newton and linear iterations that AncfAlphaStart() added to the counts of TS */
+  PetscReal *stage, *impulse; /* forces of supports in the last residual, N; their sum over the steps, N s; nodes x 6; see
+                                 AncfGetMeanReactions() */
+  PetscReal advanced;         /* length of the last AncfAdvance(), s */
+  PetscReal step;             /* what an adaptive TS wants next, s; 0: unknown */
 };
 
 extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
@@ -160,6 +165,7 @@ extern PetscErrorCode AncfTSCounts(Ancf ancf, PetscInt n[3]);
  * TS. */
 extern PetscErrorCode AncfMotionCreate(Ancf ancf);
 extern void AncfMove(Ancf ancf, PetscReal t);
+extern void AncfMoveStage(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t);
 
 /* ancfjoint.c */

@@ -45,6 +45,17 @@ PetscErrorCode AncfGetNumJoints(Ancf ancf, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfGetJoint(Ancf ancf, PetscInt joint, PetscInt k, PetscInt *n, PetscInt *beam, PetscInt *node)
+{
+  PetscFunctionBegin;
+  PetscCheck(joint >= 0 && joint < ancf->njoints && k >= 0 && k < ancf->joints[joint].n, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "AncfGetJoint: there is no joint %" PetscInt_FMT " with a node %" PetscInt_FMT, joint, k);
+  if (n) *n = ancf->joints[joint].n;
+  if (beam) *beam = ancf->joints[joint].beam[k];
+  if (node) *node = ancf->joints[joint].node[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static void AddRow(AncfJoint *j, AncfRowKind kind, PetscInt k, int c, PetscReal s0, PetscReal s1, PetscReal s2)
 {
   j->row[j->nrows++] = (AncfRow){kind, (int)k, c, {s0, s1, s2}};

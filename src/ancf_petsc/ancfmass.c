@@ -126,6 +126,19 @@ PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* sum += of the vector coordinates x of one beam: positions of q, and x cross q. */
+static void BeamTotals(const AncfBeam *b, const PetscReal *x, const PetscReal *q, PetscReal sum[3], PetscReal moment[3])
+{
+  for (PetscInt i = 2 * b->node; i < 2 * (b->node + b->spec.elements + 1); i++) {
+    const PetscReal *r = x + 3 * i, *m = q + 3 * i;
+
+    for (PetscInt c = 0; c < 3; c++) {
+      if (i % 2 == 0) sum[c] += m[c];
+      moment[c] += r[(c + 1) % 3] * m[(c + 2) % 3] - r[(c + 2) % 3] * m[(c + 1) % 3];
+    }
+  }
+}
+
 /* p = sum of the position rows of M v (the shape functions S1, S3 sum to one); L = integral of rho_s A r x rdot. */
 PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3])
 {
@@ -135,19 +148,35 @@ PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3])
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetMomentum: call AncfSetUp() first");
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &f));
   PetscCall(AncfMassMult(ancf, ancf->v, f));
-  for (PetscInt i = 0; i < 2 * ancf->nnodes; i++) {
-    const PetscReal *r = ancf->e + 3 * i, *m = f + 3 * i;
-
-    for (PetscInt c = 0; c < 3; c++) {
-      if (i % 2 == 0) P[c] += m[c];
-      H[c] += r[(c + 1) % 3] * m[(c + 2) % 3] - r[(c + 2) % 3] * m[(c + 1) % 3];
-    }
-  }
+  for (PetscInt k = 0; k < ancf->nbeams; k++) BeamTotals(&ancf->beams[k], ancf->e, f, P, H);
   PetscCall(PetscFree(f));
   for (PetscInt c = 0; c < 3; c++) {
     if (p) p[c] = P[c];
     if (L) L[c] = H[c];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscReal L[], PetscReal F[], PetscReal T[])
+{
+  const PetscInt n = 3 * ancf->nbeams;
+  PetscReal *f;
+
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetBeamBalances: call AncfSetUp() first");
+  PetscCall(PetscMalloc1(6 * ancf->nnodes, &f));
+  PetscCall(AncfMassMult(ancf, ancf->v, f));
+  for (PetscInt i = 0; i < n; i++) p[i] = L[i] = F[i] = T[i] = 0;
+  for (PetscInt b = 0; b < ancf->nbeams; b++) BeamTotals(&ancf->beams[b], ancf->e, f, p + 3 * b, L + 3 * b);
+  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+    PetscReal Q[3] = {0};
+
+    if (ancf->moment) AncfMomentForce(ancf->moment + 3 * j, ancf->e + 6 * j + 3, Q, NULL);
+    for (PetscInt c = 0; c < 6; c++)
+      f[6 * j + c] = ancf->steady[6 * j + c] + ancf->load[6 * j + c] - ancf->damping * f[6 * j + c] + (c < 3 ? 0 : Q[c - 3]);
+  }
+  for (PetscInt b = 0; b < ancf->nbeams; b++) BeamTotals(&ancf->beams[b], ancf->e, f, F + 3 * b, T + 3 * b);
+  PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

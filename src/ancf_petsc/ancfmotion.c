@@ -26,6 +26,20 @@ PetscErrorCode AncfFixNode(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd how)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfGetSupport(Ancf ancf, PetscInt beam, PetscInt node, AncfEnd *how)
+{
+  PetscInt j;
+
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetSupport: call AncfSetUp() first");
+  PetscCheck(beam >= 0 && beam < ancf->nbeams && node >= 0 && node <= ancf->beams[beam].spec.elements, ancf->comm,
+             PETSC_ERR_ARG_OUTOFRANGE, "AncfGetSupport: there is no beam %" PetscInt_FMT " with a node %" PetscInt_FMT, beam,
+             node);
+  j = ancf->beams[beam].node + node;
+  *how = ancf->fixed[j] & ANCF_FIX_GRADIENT ? ANCF_END_CLAMP : ancf->fixed[j] & ANCF_FIX_POSITION ? ANCF_END_PIN : ANCF_END_FREE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode MotionNode(Ancf ancf, const char function[], PetscInt beam, PetscInt node, PetscInt *j)
 {
   PetscFunctionBegin;
@@ -65,6 +79,21 @@ void AncfMove(Ancf ancf, PetscReal t)
   if (ancf->motion) MoveNodes(ancf, t, PETSC_FALSE);
 }
 
+/*
+  In a stage at time t: where the integrator takes positions as linear between the ends of the step, the moving nodes go with the
+  others, or a beam that accelerates as a whole would be strained, and a stiff one that drives a body would be unstable.
+*/
+void AncfMoveStage(Ancf ancf, PetscReal t)
+{
+  const PetscReal dt = ancf->stagedt, w = dt > 0 ? (t - ancf->stagestart) / dt : 0;
+
+  if (!ancf->motion || !ancf->interpolates || w <= 0 || w >= 1) return;
+  for (PetscInt j = 0; j < ancf->nnodes; j++)
+    for (int c = 0; c < 6 && ancf->fixed[j] & ANCF_MOVING; c++)
+      if (ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))
+        ancf->rest[6 * j + c] += 0.5 * dt * dt * w * (1 - w) * ancf->motion[18 * j + 12 + c];
+}
+
 /* After a step: the moving nodes are exactly where they should be. */
 PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t)
 {
@@ -83,11 +112,14 @@ PetscErrorCode AncfMotionCreate(Ancf ancf)
 {
   PetscFunctionBegin;
   if (ancf->motion) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(6 * ancf->nnodes, &ancf->stage, 6 * ancf->nnodes, &ancf->impulse));
   PetscCall(PetscCalloc4(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm,
                          6 * ancf->nnodes, &ancf->restv));
   for (PetscInt k = 0; k < ancf->ngroups; k++) {
     const PetscInt first = ancf->beams[ancf->groups[k]->firstbeam].node;
 
+    ancf->groups[k]->stage = ancf->stage + 6 * first;
+    ancf->groups[k]->impulse = ancf->impulse + 6 * first;
     ancf->groups[k]->motion = ancf->motion + 18 * first;
     ancf->groups[k]->resta = ancf->resta + 6 * first;
     ancf->groups[k]->restm = ancf->restm + 6 * first;
@@ -135,6 +167,58 @@ PetscErrorCode AncfSetNodeMotion(Ancf ancf, PetscInt beam, PetscInt node, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfGetReactions(Ancf ancf, PetscReal f[])
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetReactions: call AncfSetUp() first");
+  PetscCall(AncfSupportForces(ancf, f, PETSC_TRUE));
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++)
+    if (!(ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) f[i] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* When the last residual of a step holds, in steps after its middle; below 0: it is none of the equations of motion. */
+static PetscErrorCode StageOffset(Ancf ancf, PetscReal *offset)
+{
+  PetscBool is, endpoint;
+  PetscReal alpha;
+
+  PetscFunctionBegin;
+  *offset = -1;
+  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSALPHA2, &is));
+  if (is) {
+    PetscCall(TSAlpha2GetParams(ancf->ts, NULL, &alpha, NULL, NULL));
+    *offset = alpha - 0.5;
+  }
+  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSTHETA, &is));
+  if (is) {
+    PetscCall(TSThetaGetTheta(ancf->ts, &alpha));
+    PetscCall(TSThetaGetEndpoint(ancf->ts, &endpoint));
+    if (!endpoint) *offset = alpha - 0.5;
+  }
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)ancf->ts, &is, TSBEULER, TSBDF, ""));
+  if (is) *offset = 0.5;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AncfGetMeanReactions(Ancf ancf, PetscReal *offset, PetscReal f[])
+{
+  const Ancf one = ancf->ngroups ? ancf->groups[0] : ancf;
+
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetMeanReactions: call AncfSetUp() first");
+  *offset = -1;
+  if (!ancf->stage || one->advanced <= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StageOffset(one, offset));
+  *offset /= *offset > 0 ? (PetscReal)ancf->substeps : 1;
+  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
+    const PetscBool fixed = ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT) ? PETSC_TRUE : PETSC_FALSE;
+
+    f[i] = fixed ? ancf->impulse[i] / one->advanced : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   AncfGetNodeReaction - generalised force of a support on the beam: f[0..2] in N, f[3..5] work-conjugate to the gradient, N m (the
   moment of a clamp about its node is r' x f[3..5]).
@@ -147,8 +231,8 @@ PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, Pets
   PetscFunctionBegin;
   PetscCall(MotionNode(ancf, "AncfGetNodeReaction", beam, node, &j));
   PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
-  PetscCall(AncfSupportForces(ancf, r, PETSC_TRUE));
-  for (int c = 0; c < 6; c++) f[c] = ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT) ? r[6 * j + c] : 0;
+  PetscCall(AncfGetReactions(ancf, r));
+  PetscCall(PetscArraycpy(f, r + 6 * j, 6));
   PetscCall(PetscFree(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -173,6 +173,8 @@ PetscErrorCode AncfMotionResidual(Ancf ancf, const PetscReal *e, const PetscReal
   PetscCall(AncfResidual(ancf, x, xstride, m, mstride, f, fstride));
   AncfAddViscous(ancf, x, xv, xstride, f, fstride, NULL);
   if (ancf->njoints) PetscCall(AncfJointReduce(ancf, f, fstride, a, stride));
+  if (ancf->stage)
+    for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) ancf->stage[i] = f[(i / 6) * fstride + i % 6];
   AncfFixRows(ancf, a, stride, f, fstride);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -37,6 +37,7 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
   PetscFunctionBegin;
   (void)ts;
   AncfSetLoadTime((Ancf)ctx, t);
+  AncfMoveStage((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(VecGetArrayRead(V, &v));
   PetscCall(VecGetArrayRead(A, &a));
@@ -82,6 +83,7 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
   PetscFunctionBegin;
   (void)ts;
   AncfSetLoadTime((Ancf)ctx, t);
+  AncfMoveStage((Ancf)ctx, t);
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(Ydot, &yd));
   PetscCall(VecGetArrayWrite(F, &f));
@@ -230,6 +232,7 @@ static PetscErrorCode AncfPreStage(TS ts, PetscReal t)
   (void)t;
   PetscCall(TSGetApplicationContext(ts, &ancf));
   PetscCall(TSGetTimeStep(ts, &ancf->stagedt));
+  PetscCall(TSGetTime(ts, &ancf->stagestart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -258,6 +261,7 @@ static PetscErrorCode AncfPostStep(TS ts)
   PetscFunctionBegin;
   PetscCall(TSGetApplicationContext(ts, &ancf));
   if (ancf->form == ANCF_FORM_SECOND) PetscCall(AncfAlphaPostStep(ancf));
+  for (PetscInt i = 0; i < 6 * ancf->nnodes && ancf->stage; i++) ancf->impulse[i] += ancf->stagedt * ancf->stage[i];
   if (ancf->njoints) PetscCall(AncfPostJoints(ancf));
   PetscCall(TSGetTimeStep(ts, &dt));
   PetscCall(TSGetTime(ts, &t));
@@ -361,6 +365,7 @@ PetscErrorCode AncfChooseForm(Ancf ancf)
   PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
   ancf->form = ancf_types[k].form;
   ancf->exact = (PetscBool)(ancf_types[k].exact && fixedstep);
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)ancf->ts, &ancf->interpolates, TSALPHA2, TSTHETA, ""));
   for (PetscInt j = 0; j < ancf->njoints; j++) ancf->exact = (PetscBool)(ancf->exact && ancf->joints[j].linear);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,6 +60,14 @@ PetscErrorCode CoupleSetShort(Couple c, CoupleShort sr)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CoupleSetAttach(Couple c, CoupleAttach attach)
+{
+  PetscFunctionBegin;
+  PetscCheck(!c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetAttach() must come before CoupleSetUp()");
+  c->attach = attach;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CoupleAddSurface(Couple c, CoupleSurface surface)
 {
   PetscFunctionBegin;
@@ -161,6 +169,7 @@ PetscErrorCode CoupleView(Couple c, PetscViewer viewer)
       ", couple_tolerance %g, couple_relaxation %g\n",
       c->n, CoupleTransferTypes[c->transfer], (double)c->dtmax, c->maxiterations, (double)c->tolerance, (double)c->relaxation));
   if (c->shortrange) PetscCall(CoupleShortView(c->shortrange, viewer));
+  if (c->attach) PetscCall(CoupleAttachView(c->attach, viewer));
   for (PetscInt i = 0; i < c->n; i++)
     if (c->slot[i].surface->ops.view) PetscCall((*c->slot[i].surface->ops.view)(c->slot[i].surface, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -245,6 +254,7 @@ PetscErrorCode CoupleAdvanceSurfaces(Couple c, PetscReal t)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Advance, 0, 0, 0, 0));
+  if (c->attach) PetscCall(CoupleAttachAdvance(c->attach, t)); /* the surfaces then find their solvers at t */
   for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.advance)(c->slot[i].surface, t));
   if (c->shortrange) PetscCall(CoupleShortRemove(c->shortrange));
   PetscCall(PetscLogEventEnd(COUPLE_Advance, 0, 0, 0, 0));

@@ -113,6 +113,43 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char na
                                                     const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3],
                                                     CoupleSurface *surface);
 
+/* Nodes of beams attached to rigid bodies. */
+typedef struct _p_CoupleAttach *CoupleAttach;
+/*
+  Attachments of beams to bodies, none yet; the method is described in coupleattachstep.c. comm: communicator of the errors. ancf:
+  the beams, and rigid: the bodies, both set up; kept, not owned. attach: the new object.
+*/
+FROND_EXTERN PetscErrorCode CoupleAttachCreate(MPI_Comm comm, Ancf ancf, Rigid rigid, CoupleAttach *attach);
+/*
+  Attach a node, before CoupleAttachSetUp(): a clamped node turns with the body, a pinned one is a ball joint. Refused: a node
+  without support or attached already, one that lies farther outside of the body than the beam's diameter. beam, node: supported
+  (AncfFixNode()). body: number.
+*/
+FROND_EXTERN PetscErrorCode CoupleAttachAdd(CoupleAttach attach, PetscInt beam, PetscInt node, PetscInt body);
+/* Of the forces in a step. n: most iterations, >= 1 (50). tolerance: relative, in (0, 1) (1e-8). */
+FROND_EXTERN PetscErrorCode CoupleAttachSetIterations(CoupleAttach attach, PetscInt n, PetscReal tolerance);
+/* Read -couple_attach_.... */
+FROND_EXTERN PetscErrorCode CoupleAttachSetFromOptions(CoupleAttach attach);
+/* The nodes take the bodies' velocities; those of the rest of the beams are the caller's (AncfSetState()). */
+FROND_EXTERN PetscErrorCode CoupleAttachSetUp(CoupleAttach attach);
+/*
+  Beams and bodies to a time together, instead of AncfAdvance() and RigidAdvance(), under the loads that both have. t: s, after
+  the current time of both. Errors: PETSC_ERR_NOT_CONVERGED.
+*/
+FROND_EXTERN PetscErrorCode CoupleAttachAdvance(CoupleAttach attach, PetscReal t);
+/* n: number of attachments. */
+FROND_EXTERN PetscErrorCode CoupleAttachGetNum(CoupleAttach attach, PetscInt *n);
+/* On the beam, mean over the last step; either may be NULL. i: attachment. F: 3, N. M: 3, about the node, N m. */
+FROND_EXTERN PetscErrorCode CoupleAttachGetForce(CoupleAttach attach, PetscInt i, PetscReal F[3], PetscReal M[3]);
+/* n: iterations made since set-up. */
+FROND_EXTERN PetscErrorCode CoupleAttachGetIterations(CoupleAttach attach, PetscInt *n);
+/* What the attachments remember, see frondstate.h; beams and bodies move their own. state: saved to or loaded from. */
+FROND_EXTERN PetscErrorCode CoupleAttachMoveState(CoupleAttach attach, FrondState *state);
+/* Print the attachments. viewer: an ASCII viewer of PETSc. */
+FROND_EXTERN PetscErrorCode CoupleAttachView(CoupleAttach attach, PetscViewer viewer);
+/* Free the attachments. attach: becomes NULL. */
+FROND_EXTERN PetscErrorCode CoupleAttachDestroy(CoupleAttach *attach);
+
 /*
   An empty coupling. Then: CoupleSetSph(), CoupleAddSurface(), CoupleSetUp(), CoupleStep(). comm: communicator of the fluid.
   couple: the new coupling.
@@ -122,6 +159,9 @@ FROND_EXTERN PetscErrorCode CoupleCreate(MPI_Comm comm, Couple *couple);
 FROND_EXTERN PetscErrorCode CoupleSetSph(Couple couple, Sph sph);
 /* Append a structure, before CoupleSetUp(). surface: the couple keeps a reference of its own; destroy yours as well. */
 FROND_EXTERN PetscErrorCode CoupleAddSurface(Couple couple, CoupleSurface surface);
+/* Beams attached to bodies, before CoupleSetUp(); their surfaces are added as well. attach: set up; kept, not owned; NULL: none.
+ */
+FROND_EXTERN PetscErrorCode CoupleSetAttach(Couple couple, CoupleAttach attach);
 /* Upper bound on the step. dtmax: s, > 0; PETSC_DECIDE (default) for none. */
 FROND_EXTERN PetscErrorCode CoupleSetMaxTimeStep(Couple couple, PetscReal dtmax);
 /*

@@ -34,6 +34,20 @@ PetscErrorCode CoupleBalanceStart(Couple c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The beams' supports include the bodies, whose own forces include the beams': take what is between the two out of both. */
+static PetscErrorCode AttachImpulses(Couple c, PetscReal dt)
+{
+  PetscReal W[3];
+
+  PetscFunctionBegin;
+  CoupleAttachTotal(c->attach, W);
+  for (int k = 0; k < 3; k++) {
+    c->balance.body[k] -= dt * W[k];
+    c->balance.support[k] += dt * W[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Impulses of one step: body force and held surfaces exactly, weight and supports as the structure gives them for the step. */
 PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
 {
@@ -72,6 +86,7 @@ PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
       b->body[k] -= dt * bodies[k];
     }
   }
+  if (c->attach) PetscCall(AttachImpulses(c, dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -28,6 +28,7 @@ typedef struct _p_CoupleIteration *CoupleIteration;
 struct _p_Couple {
   MPI_Comm comm;
   Sph sph;
+  CoupleAttach attach; /* NULL without */
   CoupleSlot *slot;
   PetscInt n, cap;
   PetscReal dtmax;
@@ -63,6 +64,12 @@ extern PetscErrorCode CoupleLinkForces(Couple couple, CoupleSlot *slot);
 /* coupleiterate.c */
 extern PetscErrorCode CoupleIterate(Couple couple, PetscReal t, PetscReal dt);
 extern PetscErrorCode CoupleIterationDestroy(Couple couple);
+
+/* coupleattach.c: reals that attachments carry from step to step, to or from an array of so many. */
+extern void CoupleAttachCount(CoupleAttach attach, PetscInt *n);
+/* Force of the beams on all free bodies in the last step, N. */
+extern void CoupleAttachTotal(CoupleAttach attach, PetscReal F[3]);
+extern void CoupleAttachCopy(CoupleAttach attach, PetscBool load, PetscReal *state);
 
 /* couplebalance.c */
 extern PetscErrorCode CoupleBalanceStart(Couple couple);

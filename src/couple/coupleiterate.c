@@ -35,6 +35,12 @@ static PetscErrorCode SetUp(Couple c)
     it->nstate += n;
     if (!s->held) it->nforce += 3 * c->slot[i].n;
   }
+  if (c->attach) {
+    PetscInt n;
+
+    CoupleAttachCount(c->attach, &n);
+    it->nstate += n;
+  }
   PetscCall(PetscMalloc4(it->nstate, &it->state, it->nforce, &it->F, it->nforce, &it->r, it->nforce, &it->rold));
   c->iteration = it;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,6 +71,7 @@ static PetscErrorCode States(Couple c, PetscBool load)
       PetscCall((*s->ops.save)(s, p));
     p += n;
   }
+  if (c->attach) CoupleAttachCopy(c->attach, load, p);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
