@@ -261,8 +261,8 @@ FROND_EXTERN PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal
 */
 FROND_EXTERN PetscErrorCode AncfGetMeanReactions(Ancf ancf, PetscReal *offset, PetscReal f[]);
 /*
-  Balance of every beam now, moments about the origin, beams x 3 each. p: kg m/s. L: kg m^2/s. F: N, and T: N m: of weight,
-  loads, moments and damping of the mass; without supports and joints.
+  Balance of every beam now, moments about the origin; F and T are of weight, loads, moments and damping of the mass, without
+  supports and joints. All beams x 3. p: kg m/s. L: kg m^2/s. F: N. T: N m.
 */
 FROND_EXTERN PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscReal L[], PetscReal F[], PetscReal T[]);
 /* As AncfGetNodeReaction() for all nodes at once. f: nodes x 6, N and N m, 0 where there is no support. */
