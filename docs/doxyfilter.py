@@ -29,7 +29,7 @@ def body(comment):
     return escape(text)
 
 
-OBJECTS = {"Sph": "the fluid", "Ancf": "the beams", "Rigid": "the bodies", "Couple": "the coupling", "CoupleSurface": "the surface", "CoupleAttach": "the attachments", "FrondScene": "the scene"}
+OBJECTS = {"Sph": "the fluid", "Ancf": "the beams", "Rigid": "the bodies", "Couple": "the coupling", "CoupleSurface": "the surface", "CoupleAttach": "the attachments", "CoupleShort": "the short-range forces", "FrondScene": "the scene"}
 
 
 def arguments(declaration):
