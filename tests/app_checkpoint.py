@@ -148,6 +148,8 @@ def variants():
     cut("verlet", ["-sph_integrator", "verlet", "-sph_reinit", "none"])
     cut("symplectic", ["-sph_integrator", "symplectic"], steps=100)
     cut("iterated", ["-couple_iterations", "4"], steps=60)
+    cut("linear", ["-couple_loads", "linear"], steps=60)
+    cut("linear_iterated", ["-couple_loads", "linear", "-couple_iterations", "4"], steps=40)
     cut("double", ["-sph_precision", "double", "-sph_wall", "bce", "-sph_kernel", "wendland"], steps=60)
     cut("substeps", ["-ancf_substeps", "3", "-rigid_substeps", "2"], steps=60)
     for kind in ("beuler", "cn", "euler", "basicsymplectic"):

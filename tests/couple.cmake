@@ -18,4 +18,5 @@ add_test(NAME couple_substeps COMMAND ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURC
   $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/couple_substeps ${PROJECT_SOURCE_DIR})
 set_tests_properties(couple_substeps PROPERTIES LABELS validation TIMEOUT 600 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
 frond_test(test_couple_light SOURCES test_couple_light.c LABELS validation)
+frond_test(test_couple_order SOURCES test_couple_order.c LABELS validation)
 frond_test(test_couple_array SOURCES test_couple_array.c LABELS validation)

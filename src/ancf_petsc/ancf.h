@@ -155,7 +155,8 @@ FROND_EXTERN PetscErrorCode AncfZeroLoads(Ancf ancf);
 FROND_EXTERN PetscErrorCode AncfGetLoads(Ancf ancf, PetscReal **Q);
 /*
   Loads at the end of the next AncfAdvance(): Q^a is then linear in time from AncfGetLoads() to these in that call, and
-  constant at these afterwards. Q: nodes x 6, N and N m, a copy of the loads at the start, to write to; borrowed.
+  constant at these afterwards. Q: nodes x 6, N and N m, to write to; borrowed; a copy of the loads at the start, made when first
+  asked for since AncfGetLoads().
 */
 FROND_EXTERN PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q);
 

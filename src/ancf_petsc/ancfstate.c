@@ -167,7 +167,7 @@ PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q)
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetLoadsEnd: call AncfSetUp() first");
   if (!ancf->loadend) PetscCall(PetscMalloc1(6 * ancf->nnodes, &ancf->loadend));
-  PetscCall(PetscArraycpy(ancf->loadend, ancf->load, 6 * ancf->nnodes));
+  if (!ancf->linear) PetscCall(PetscArraycpy(ancf->loadend, ancf->load, 6 * ancf->nnodes));
   *Q = ancf->loadend;
   ancf->linear = PETSC_TRUE;
   ancf->loadnow = 0;

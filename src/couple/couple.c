@@ -4,8 +4,9 @@
   One step from t to t + dt: rates at t and fluid at the half step; markers of every surface extrapolated to the half step with
   the structure's velocity and acceleration; rates, fluid state at t + dt and marker forces at the half step (a midpoint rule
   for both sides); structures advance to t + dt under these forces with substeps of their own; markers take the new state.
-  Action and reaction are equal. This staggered step is between first and second order (about 1.2 measured), since walls feel the
-  structure's acceleration of the last step; coupleiterate.c iterates on the forces and is of second order (1.96 measured).
+  Action and reaction are equal. This staggered step is between first and second order, since walls feel the structure's
+  acceleration of the last step. coupleloads.c makes loads linear over the step, coupleiterate.c iterates on the forces; both
+  together are of second order. docs/substeps.md has the measured orders.
 */
 #include "coupleimpl.h"
 
@@ -99,6 +100,7 @@ PetscErrorCode CoupleSetFromOptions(Couple c)
   PetscReal r = c->dtmax, tolerance = c->tolerance, relaxation = c->relaxation;
   PetscInt n = c->maxiterations;
   PetscEnum transfer = (PetscEnum)c->transfer;
+  CoupleLoads loads = c->loads;
   PetscBool set;
 
   PetscFunctionBegin;
@@ -117,6 +119,10 @@ PetscErrorCode CoupleSetFromOptions(Couple c)
                              "What passes between fluid and structures: markers, generalised (states and forces), auto",
                              "CoupleSetTransfer", CoupleTransferTypes, transfer, &transfer, &set));
   if (set) PetscCall(CoupleSetTransfer(c, (CoupleTransferType)transfer));
+  PetscCall(PetscOptionsEnum("-couple_loads",
+                             "Loads over a step: its middle's, or linear in time with the slope from the last step",
+                             "CoupleSetLoads", CoupleLoadsTypes, (PetscEnum)loads, (PetscEnum *)&loads, NULL));
+  PetscCall(CoupleSetLoads(c, loads));
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,7 +138,7 @@ PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
       PetscCall(SphSetGroupState(c->sph, s->group, s->state));
       continue;
     }
-    PetscCall((*s->surface->ops.kinematics)(s->surface, ahead, s->x, s->v, s->a));
+    PetscCall(CoupleMoveSlot(c, s, ahead));
     PetscCall(SphSetBoundaryMotion(c->sph, s->group, s->x, s->v, s->a));
   }
   PetscCall(PetscLogEventEnd(COUPLE_Kinematics, 0, 0, 0, 0));
@@ -141,6 +147,8 @@ PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
 
 PetscErrorCode CoupleSetUp(Couple c)
 {
+  PetscInt most = 0;
+
   PetscFunctionBegin;
   if (c->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(c->sph, c->comm, PETSC_ERR_ORDER, "CoupleSetSph() must come before CoupleSetUp()");
@@ -149,10 +157,14 @@ PetscErrorCode CoupleSetUp(Couple c)
     const PetscReal *x, *volume, *depth;
     PetscCall((*s->surface->ops.getmarkers)(s->surface, &s->n, &x, &volume, &depth));
     PetscCall(PetscCalloc4(3 * s->n, &s->x, 3 * s->n, &s->v, 3 * s->n, &s->a, 3 * s->n, &s->f));
+    if (!s->surface->held)
+      PetscCall(PetscCalloc4(3 * s->n, &s->flast, 3 * s->n, &s->vstart, 3 * s->n, &s->alast[0], 3 * s->n, &s->alast[1]));
+    most = PetscMax(most, s->n);
     PetscCall((*s->surface->ops.kinematics)(s->surface, 0.0, s->x, s->v, s->a));
     PetscCall(SphAddBoundary(c->sph, s->n, s->x, s->v, volume, depth, &s->group));
   }
   PetscCall(CoupleLinkSetUp(c));
+  PetscCall(PetscMalloc1(3 * most, &c->work));
   PetscCall(SphSetUp(c->sph));
   PetscCall(CoupleMoveMarkers(c, 0.0));
   c->setup = PETSC_TRUE;
@@ -163,11 +175,12 @@ PetscErrorCode CoupleSetUp(Couple c)
 PetscErrorCode CoupleView(Couple c, PetscViewer viewer)
 {
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(
-      viewer,
-      "Coupling: %" PetscInt_FMT " surfaces, couple_transfer %s, couple_dt_max %g s, couple_iterations %" PetscInt_FMT
-      ", couple_tolerance %g, couple_relaxation %g\n",
-      c->n, CoupleTransferTypes[c->transfer], (double)c->dtmax, c->maxiterations, (double)c->tolerance, (double)c->relaxation));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "Coupling: %" PetscInt_FMT
+                                   " surfaces, couple_transfer %s, couple_dt_max %g s, couple_iterations %" PetscInt_FMT
+                                   ", couple_tolerance %g, couple_relaxation %g, couple_loads %s\n",
+                                   c->n, CoupleTransferTypes[c->transfer], (double)c->dtmax, c->maxiterations,
+                                   (double)c->tolerance, (double)c->relaxation, CoupleLoadsTypes[c->loads]));
   if (c->shortrange) PetscCall(CoupleShortView(c->shortrange, viewer));
   if (c->attach) PetscCall(CoupleAttachView(c->attach, viewer));
   for (PetscInt i = 0; i < c->n; i++)
@@ -183,9 +196,11 @@ PetscErrorCode CoupleDestroy(Couple *couple)
     CoupleSlot *s = &(*couple)->slot[i];
     PetscCall(CoupleLinkDestroy(s));
     if (s->x) PetscCall(PetscFree4(s->x, s->v, s->a, s->f));
+    if (s->flast) PetscCall(PetscFree4(s->flast, s->vstart, s->alast[0], s->alast[1]));
     PetscCall(CoupleSurfaceDestroy(&s->surface));
   }
   PetscCall(CoupleIterationDestroy(*couple));
+  PetscCall(PetscFree((*couple)->work));
   PetscCall(PetscFree((*couple)->slot));
   PetscCall(PetscFree(*couple));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -228,6 +243,7 @@ static PetscErrorCode Transfer(Couple c, PetscReal h)
     s->audit = audit;
   }
   if (c->shortrange) PetscCall(CoupleShortApply(c->shortrange, h));
+  PetscCall(CoupleLoadsChange(c));
   PetscCall(PetscLogEventEnd(COUPLE_Transfer, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -293,6 +309,7 @@ PetscErrorCode CoupleStep(Couple c, PetscReal tmax, PetscReal *taken)
   PetscCheck(c->setup, c->comm, PETSC_ERR_ORDER, "CoupleSetUp() must come before CoupleStep()");
   PetscCall(SphGetTime(c->sph, &t, NULL));
   PetscCall(ChooseStep(c, tmax, &dt));
+  PetscCall(CoupleLoadsBegin(c, dt));
   PetscCall(SphStepBegin(c->sph, dt));
   if (c->maxiterations > 1) {
     PetscCall(CoupleIterate(c, t, dt));
@@ -304,6 +321,7 @@ PetscErrorCode CoupleStep(Couple c, PetscReal tmax, PetscReal *taken)
     PetscCall(CoupleAdvanceSurfaces(c, t + dt));
   }
   PetscCall(CoupleMoveMarkers(c, 0.0));
+  PetscCall(CoupleLoadsEnd(c));
   PetscCall(CoupleBalanceAdd(c, dt));
   if (taken) *taken = dt;
   PetscFunctionReturn(PETSC_SUCCESS);

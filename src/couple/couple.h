@@ -65,6 +65,11 @@ typedef struct {
   PetscErrorCode (*linkstate)(CoupleSurface, PetscReal dt, PetscReal *state); /* optional */
   /* optional */
   PetscErrorCode (*applyloads)(CoupleSurface, const PetscReal *load, const SphLinkTotals *totals, CoupleAudit *audit);
+  /*
+    Optional, for COUPLE_LOADS_LINEAR; called for every surface that has it after all applyforces: the marker forces change by df
+    (n x 3, N) over the next advance, linearly in time, about the mean given to applyforces. Without it they stay constant.
+  */
+  PetscErrorCode (*changeforces)(CoupleSurface, const PetscReal *df);
 } CoupleSurfaceOps;
 
 /*
@@ -179,6 +184,16 @@ typedef enum { COUPLE_TRANSFER_AUTO, COUPLE_TRANSFER_MARKERS, COUPLE_TRANSFER_GE
 FROND_EXTERN const char *const CoupleTransferTypes[];
 /* Before CoupleSetUp(). transfer: what passes between coupling and fluid. */
 FROND_EXTERN PetscErrorCode CoupleSetTransfer(Couple couple, CoupleTransferType transfer);
+/*
+  How a step's loads go on over it. constant (default): the fluid's force at the middle of the step. linear: with that mean, and
+  with the slope from the force of the last step to this one's (each iterate's, when iterated). With marker forces only, see
+  CoupleSetTransfer(). Source: coupleloads.c; orders measured in docs/substeps.md.
+*/
+typedef enum { COUPLE_LOADS_CONSTANT, COUPLE_LOADS_LINEAR } CoupleLoads;
+/* Names of CoupleLoads. */
+FROND_EXTERN const char *const CoupleLoadsTypes[];
+/* How loads go on over a step; may be changed between steps. loads: COUPLE_LOADS_CONSTANT (default) or COUPLE_LOADS_LINEAR. */
+FROND_EXTERN PetscErrorCode CoupleSetLoads(Couple couple, CoupleLoads loads);
 /* Each output may be NULL. iterations: made since set-up. unconverged: steps that missed the tolerance. */
 FROND_EXTERN PetscErrorCode CoupleGetIterations(Couple couple, PetscInt *iterations, PetscInt *unconverged);
 /* Read -couple_.... */

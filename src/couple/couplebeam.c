@@ -9,6 +9,7 @@ typedef struct {
   Ancf ancf;
   PetscInt beam, node0, elements, ndisk;
   PetscReal l, rhoA;        /* element length, m; mass per length, kg/m */
+  PetscReal *load;          /* this beam's of AncfGetLoads() */
   PetscReal reaction[2][3]; /* of all supports at the ends of the last step, N; beam 0 only */
 } Beam;
 
@@ -27,11 +28,27 @@ static PetscErrorCode GetState_Beam(void *ctx, PetscReal *t, const PetscReal **q
 
 static PetscErrorCode GetLoads_Beam(void *ctx, PetscReal **Q)
 {
-  const Beam *b = (const Beam *)ctx;
+  Beam *b = (Beam *)ctx;
 
   PetscFunctionBegin;
   PetscCall(AncfGetLoads(b->ancf, Q));
   *Q += 6 * b->node0;
+  b->load = *Q;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ChangeLoads_Beam(void *ctx, const PetscReal *dQ)
+{
+  Beam *b = (Beam *)ctx;
+  PetscReal *end;
+
+  PetscFunctionBegin;
+  PetscCall(AncfGetLoadsEnd(b->ancf, &end));
+  end += 6 * b->node0;
+  for (PetscInt i = 0; i < 6 * (b->elements + 1); i++) {
+    b->load[i] -= 0.5 * dQ[i];
+    end[i] += 0.5 * dQ[i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,7 +232,8 @@ static PetscErrorCode CreateSurface(Beam *b, const AncfBeamSpec *spec, PetscInt 
                              .save = Save_Beam,
                              .load = Load_Beam,
                              .view = View_Beam,
-                             .destroy = Destroy_Beam};
+                             .destroy = Destroy_Beam,
+                             .changeloads = ChangeLoads_Beam};
   const PetscInt nd = b->ndisk, n = nd * c->n, nn = 2 * (b->elements + 1);
   CoupleHostSpec host;
   Rows r;

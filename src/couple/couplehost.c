@@ -16,8 +16,9 @@ typedef struct {
   PetscBool *direction;
   PetscReal *shape, *slope; /* slope: NULL without */
   PetscReal *offset, *x0, *volume, *depth;
-  PetscReal *d1; /* per section with slopes: transported unit normal at the structure's own time, 3 */
-  PetscReal *Q;  /* kept here when the host has no array for it */
+  PetscReal *d1;         /* per section with slopes: transported unit normal at the structure's own time, 3 */
+  PetscReal *Q;          /* of this surface alone: the host's when it has no array for it */
+  PetscReal *loads, *dQ; /* the host's array; change of Q over the step */
   /* of the last kinematics call */
   PetscReal *q, *qdot; /* nodes, nnodes x 3 */
   FrondSection *frame; /* per section */
@@ -86,6 +87,7 @@ static PetscErrorCode GetLoads(Host *h, PetscReal **Q)
   PetscFunctionBegin;
   *Q = h->Q;
   if (h->ops.getloads) PetscCall((*h->ops.getloads)(h->ctx, Q));
+  h->loads = *Q;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,23 +136,43 @@ static PetscErrorCode GiveLoads(Host *h, const PetscReal axial[3], CoupleAudit *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ApplyForces_Host(CoupleSurface surface, const PetscReal *f, CoupleAudit *audit)
+/* Q = S^T f, and totals over the sections. */
+static PetscErrorCode Gather(const Host *h, const PetscReal *f, PetscReal *Q, PetscReal totals[SECTION_TOTALS])
 {
-  Host *h = (Host *)surface->ctx;
-  PetscReal totals[SECTION_TOTALS] = {0.0};
   PetscInt i = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(h->Q, 3 * h->nnodes));
+  PetscCall(PetscArrayzero(Q, 3 * h->nnodes));
   for (PetscInt s = 0; s < h->nsections; s++) {
     PetscReal sums[SECTION_SUMS] = {0.0};
     for (; i < h->n && h->section[i] == s; i++) section_add_force(h->o + 3 * i, f + 3 * i, sums);
     for (PetscInt e = h->rowstart[s]; e < h->rowstart[s + 1]; e++)
-      section_add_node(&h->frame[s], h->shape[e], h->slope ? h->slope[e] : 0.0, sums, sums + 3, h->Q + 3 * h->node[e]);
+      section_add_node(&h->frame[s], h->shape[e], h->slope ? h->slope[e] : 0.0, sums, sums + 3, Q + 3 * h->node[e]);
     section_add_totals(&h->frame[s], sums, totals);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyForces_Host(CoupleSurface surface, const PetscReal *f, CoupleAudit *audit)
+{
+  Host *h = (Host *)surface->ctx;
+  PetscReal totals[SECTION_TOTALS] = {0.0};
+
+  PetscFunctionBegin;
+  PetscCall(Gather(h, f, h->Q, totals));
   audit->twist += totals[7];
   PetscCall(GiveLoads(h, totals + 8, audit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ChangeForces_Host(CoupleSurface surface, const PetscReal *df)
+{
+  Host *h = (Host *)surface->ctx;
+  PetscReal totals[SECTION_TOTALS] = {0.0};
+
+  PetscFunctionBegin;
+  PetscCall(Gather(h, df, h->dQ, totals));
+  PetscCall((*h->ops.changeloads)(h->ctx, h->dQ));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,10 +236,10 @@ static PetscErrorCode CarryNormals(Host *h)
 static PetscErrorCode Advance_Host(CoupleSurface surface, PetscReal t)
 {
   Host *h = (Host *)surface->ctx;
-  PetscReal *Q, now;
+  PetscReal *Q = h->loads, now;
 
   PetscFunctionBegin;
-  PetscCall(GetLoads(h, &Q));
+  if (!Q) PetscCall(GetLoads(h, &Q));
   PetscCall((*h->ops.advance)(h->ctx, t, Q));
   PetscCall((*h->ops.getstate)(h->ctx, &now, NULL, NULL, NULL));
   PetscCheck(PetscAbsReal(now - t) <= 1e-12 * PetscMax(1.0, PetscAbsReal(t)), surface->comm, PETSC_ERR_USER,
@@ -295,7 +317,7 @@ static PetscErrorCode Destroy_Host(CoupleSurface surface)
   PetscCall(PetscFree(h->shape));
   PetscCall(PetscFree(h->slope));
   PetscCall(PetscFree4(h->offset, h->x0, h->volume, h->depth));
-  PetscCall(PetscFree4(h->d1, h->Q, h->q, h->qdot));
+  PetscCall(PetscFree5(h->d1, h->Q, h->dQ, h->q, h->qdot));
   PetscCall(PetscFree3(h->frame, h->o, h->inode));
   PetscCall(PetscFree(h->offset3));
   PetscCall(PetscFree(surface->ctx));
@@ -367,7 +389,7 @@ static PetscErrorCode CopySpec(Host *h, const CoupleHostSpec *p)
   PetscCall(PetscMalloc1(ne, &h->shape));
   if (p->slope) PetscCall(PetscMalloc1(ne, &h->slope));
   PetscCall(PetscCalloc4(2 * n, &h->offset, 3 * n, &h->x0, n, &h->volume, n, &h->depth));
-  PetscCall(PetscCalloc4(3 * ns, &h->d1, 3 * nn, &h->Q, 3 * nn, &h->q, 3 * nn, &h->qdot));
+  PetscCall(PetscCalloc5(3 * ns, &h->d1, 3 * nn, &h->Q, 3 * nn, &h->dQ, 3 * nn, &h->q, 3 * nn, &h->qdot));
   PetscCall(PetscCalloc3(ns, &h->frame, 3 * n, &h->o, ne, &h->inode));
   PetscCall(PetscArraycpy(h->rowstart, p->rowstart, ns + 1));
   PetscCall(PetscArraycpy(h->node, p->node, ne));
@@ -438,6 +460,7 @@ PetscErrorCode CoupleSurfaceCreateHost(MPI_Comm comm, const char name[], const C
   PetscCall(CheckRows(comm, name, spec));
   PetscCall(CheckMarkers(comm, name, spec));
   if (ops->momentum) sops.momentum = Momentum_Host;
+  if (ops->changeloads) sops.changeforces = ChangeForces_Host;
   if (ops->statesize) {
     sops.statesize = StateSize_Host;
     sops.save = Save_Host;

@@ -39,8 +39,8 @@ typedef struct {
   /* The host's own array for Q (nnodes x 3, N), which the coupling zeroes and adds to; needed when several surfaces share the
      host. NULL: the surface keeps one. */
   PetscErrorCode (*getloads)(void *ctx, PetscReal **Q);
-  /* Integrate to t (s) under Q (nnodes x 3, N, constant: the force at the middle of the step), in as many steps as the host
-     likes. Called for every surface of the host: do nothing when already there. */
+  /* Integrate to t (s) under Q (nnodes x 3, N, constant but for changeloads: the force at the middle of the step), in as many
+     steps as the host likes. Called for every surface of the host: do nothing when already there. */
   PetscErrorCode (*advance)(void *ctx, PetscReal t, const PetscReal *Q);
   /* Optional, as in CoupleSurfaceOps. */
   PetscErrorCode (*momentum)(void *ctx, PetscReal p[3], PetscReal weight[3], PetscReal support[3]);
@@ -49,6 +49,9 @@ typedef struct {
   PetscErrorCode (*load)(void *ctx, const PetscReal *state); /* optional: go back to them */
   PetscErrorCode (*view)(void *ctx, PetscViewer viewer);     /* optional: print */
   PetscErrorCode (*destroy)(void *ctx);                      /* optional: free ctx */
+  /* Optional, for COUPLE_LOADS_LINEAR; called after all loads are there and before advance: they change by dQ (nnodes x 3, N)
+     over it, linearly in time, about the mean Q. */
+  PetscErrorCode (*changeloads)(void *ctx, const PetscReal *dQ);
 } CoupleHostOps;
 
 /*

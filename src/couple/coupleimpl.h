@@ -16,7 +16,9 @@ struct _p_CoupleSurface {
 typedef struct {
   CoupleSurface surface;
   PetscInt group, n;
-  PetscReal *x, *v, *a, *f; /* n x 3 */
+  PetscReal *x, *v, *a, *f;             /* n x 3 */
+  PetscReal *flast, *vstart, *alast[2]; /* not held: force of the last step, velocity at the start of this one, mean
+                                         * accelerations over the last two */
   CoupleAudit audit;
   PetscBool linked;        /* moved by its state (sphlink.h); x, v, f are then filled when somebody asks */
   PetscReal *state, *load; /* of the link */
@@ -39,8 +41,11 @@ struct _p_Couple {
   PetscReal tolerance, relaxation;
   CoupleShort shortrange;    /* NULL: none */
   CoupleIteration iteration; /* made at the first iterated step */
-  PetscReal p0[3];           /* momentum at set-up */
-  PetscReal mass;            /* of the fluid, kg; for `left` markers gone */
+  CoupleLoads loads;
+  PetscReal dt, dtlast[2]; /* the step being made, the two before it, s; 0: none */
+  PetscReal *work;         /* 3 per marker of the largest surface */
+  PetscReal p0[3];         /* momentum at set-up */
+  PetscReal mass;          /* of the fluid, kg; for `left` markers gone */
   PetscInt left;
   CoupleBalance balance; /* impulses accumulated so far */
 };
@@ -60,6 +65,13 @@ extern PetscErrorCode CoupleLinkSetUp(Couple couple);
 extern PetscErrorCode CoupleLinkDestroy(CoupleSlot *slot);
 extern PetscErrorCode CoupleLinkFetch(Couple couple, PetscInt i);
 extern PetscErrorCode CoupleLinkForces(Couple couple, CoupleSlot *slot);
+/* coupleloads.c: before and after a step; the loads just applied made linear; a slot's markers at the structure's time plus
+ * ahead, s. */
+extern PetscErrorCode CoupleLoadsBegin(Couple couple, PetscReal dt);
+extern PetscErrorCode CoupleLoadsEnd(Couple couple);
+extern PetscErrorCode CoupleLoadsChange(Couple couple);
+extern PetscErrorCode CoupleMoveSlot(Couple couple, CoupleSlot *slot, PetscReal ahead);
+extern PetscErrorCode CoupleLoadsMoveState(Couple couple, FrondState *state);
 
 /* coupleiterate.c */
 extern PetscErrorCode CoupleIterate(Couple couple, PetscReal t, PetscReal dt);

@@ -29,8 +29,11 @@ PetscErrorCode CoupleLinkSetUp(Couple c)
   PetscCheck(c->transfer != COUPLE_TRANSFER_GENERALISED || c->maxiterations == 1, c->comm, PETSC_ERR_SUP,
              "couple_transfer = generalised: not with couple_iterations = %" PetscInt_FMT ", which compares marker forces",
              c->maxiterations);
+  PetscCheck(c->transfer != COUPLE_TRANSFER_GENERALISED || c->loads == COUPLE_LOADS_CONSTANT, c->comm, PETSC_ERR_SUP,
+             "couple_transfer = generalised: not with couple_loads = linear, which follows marker forces");
   PetscCall(SphGetResident(c->sph, &resident));
-  if (c->transfer == COUPLE_TRANSFER_MARKERS || c->maxiterations > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (c->transfer == COUPLE_TRANSFER_MARKERS || c->maxiterations > 1 || c->loads != COUPLE_LOADS_CONSTANT)
+    PetscFunctionReturn(PETSC_SUCCESS);
   if (c->transfer == COUPLE_TRANSFER_AUTO && !resident) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];

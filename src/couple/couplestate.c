@@ -87,6 +87,7 @@ PetscErrorCode CoupleMoveState(Couple c, FrondState *s)
   FrondMoveReal(s, "couple/impulse_wall", c->balance.wall, 3);
   for (PetscInt i = 0; i < c->n; i++) PetscCall(MoveSurface(c, i, s));
   if (c->attach) PetscCall(CoupleAttachMoveState(c->attach, s));
+  PetscCall(CoupleLoadsMoveState(c, s));
   if (s->way == FROND_STATE_LOAD) PetscCall(CoupleMoveMarkers(c, 0.0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
