@@ -30,6 +30,8 @@ bad("-sph_h 0.02", "h", r"0\.02|0\.5")
 bad("-beam_rod_end 0.05,0.2,0.2", "rod", "start and end", "length")
 bad("-beam_rod_diameter 0.01", "rod", "diameter|thin", r"0\.01", r"0\.04")
 bad("-beam_rod_EI -1e3", "beam_rod_EI", "positive")
+bad("-beam_rod_curvature 1", "beam_rod_curvature = 1", "straight")
+bad("-beam_rod_pretension nan", "pretension")
 
 # Time.
 bad("-ancf_substeps 0", "substeps", "0", "1")

@@ -169,6 +169,7 @@ PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number
   PetscCheck(!PetscIsInfOrNanReal(L), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "Beam %" PetscInt_FMT ": length must be finite",
              ancf->nbeams);
   PetscCall(AncfBeamSection(ancf, spec, &beam));
+  PetscCall(AncfCheckRest(ancf, spec));
   for (int k = 0; k < 2; k++) {
     AncfEnd end = k ? spec->end1 : spec->end0;
 
@@ -179,7 +180,7 @@ PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number
                "Beam %" PetscInt_FMT ": velocity = (%g, %g, %g) m/s must be zero because end%d is fixed (%s)", ancf->nbeams,
                (double)spec->velocity[0], (double)spec->velocity[1], (double)spec->velocity[2], k, AncfEnds[end]);
   }
-  beam.l = L / (PetscReal)spec->elements;
+  beam.l = AncfSpecLength(spec) / (PetscReal)spec->elements;
   beam.node = ancf->nnodes;
   beam.element = ancf->nelements;
   if (ancf->nbeams == ancf->maxbeams) {
@@ -327,13 +328,9 @@ static void AncfSetUpNodes(Ancf ancf)
 
     for (PetscInt k = 0; k <= s->elements; k++) {
       PetscInt j = ancf->beams[b].node + k;
-      PetscReal xi = (PetscReal)k / (PetscReal)s->elements, L = ancf->beams[b].l * (PetscReal)s->elements;
 
-      for (PetscInt c = 0; c < 3; c++) {
-        ancf->e[6 * j + c] = s->start[c] * (1 - xi) + s->end[c] * xi;
-        ancf->e[6 * j + 3 + c] = (s->end[c] - s->start[c]) / L;
-        ancf->v[6 * j + c] = s->velocity[c];
-      }
+      AncfSpecPoint(s, (PetscReal)k / (PetscReal)s->elements, ancf->e + 6 * j);
+      for (PetscInt c = 0; c < 3; c++) ancf->v[6 * j + c] = s->velocity[c];
     }
     ancf->fixed[ancf->beams[b].node] = bits[s->end0];
     ancf->fixed[ancf->beams[b].node + s->elements] = bits[s->end1];
@@ -431,6 +428,7 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   PetscCall(AncfRuleSetUp(&ancf->rule, ancf->strain, ancf->naxial, ancf->nbending));
   AncfSetUpNodes(ancf);
   PetscCall(PetscArraycpy(ancf->rest, ancf->e, n));
+  PetscCall(AncfSetUpRest(ancf));
   PetscCall(AncfJointSetUp(ancf));
   PetscCall(AncfSetUpBatches(ancf));
   PetscCall(AncfSetUpLaneBeams(ancf));
@@ -476,6 +474,10 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
     if (m->spec.axialdamping > 0 || m->spec.bendingdamping > 0)
       PetscCall(PetscViewerASCIIPrintf(viewer, "        retardation times: axial %g s, bending %g s\n",
                                        (double)m->spec.axialdamping, (double)m->spec.bendingdamping));
+    if (m->spec.pretension != 0 || m->spec.curvature != 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "        pretension %g N, curvature %g 1/m about (%g, %g, %g)\n",
+                                       (double)m->spec.pretension, (double)m->spec.curvature, (double)m->spec.normal[0],
+                                       (double)m->spec.normal[1], (double)m->spec.normal[2]));
   }
   if (ancf->njoints)
     PetscCall(PetscViewerASCIIPrintf(viewer, "joints %" PetscInt_FMT ", by elimination of coordinates\n", ancf->njoints));
@@ -509,6 +511,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree4(a->motion, a->resta, a->restm, a->restv));
   PetscCall(PetscFree2(a->stage, a->impulse));
   PetscCall(PetscFree2(a->spin, a->spinsum));
+  PetscCall(PetscFree3(a->natural, a->normal, a->shape));
   PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));

@@ -22,18 +22,20 @@ typedef enum { ANCF_STRAIN_PAPER, ANCF_STRAIN_ENGINEERING } AncfStrain;
 /* What a beam end may do. Free: all 6 coordinates; pin: position fixed; clamp: position and gradient fixed. */
 typedef enum { ANCF_END_FREE, ANCF_END_PIN, ANCF_END_CLAMP } AncfEnd;
 
-/* Straight beam with a circular section; every field must be set. AncfBeamSpecInit() gives the defaults. */
+/* Straight or arched beam with a circular section; every field must be set. AncfBeamSpecInit() gives the defaults. */
 typedef struct {
   PetscReal start[3];                     /* first node, m */
-  PetscReal end[3];                       /* last node, m; |end-start| is the rest length L */
+  PetscReal end[3];                       /* last node, m; |end-start| is the length L, of an arc its chord */
   PetscInt elements;                      /* number of elements, >= 1 */
   PetscReal diameter;                     /* d, m: the outer diameter that the fluid sees; A = pi d^2/4, I = pi d^4/64 */
   PetscReal density;                      /* rho_s, kg/m^3 */
   PetscReal young;                        /* E, Pa */
   PetscReal axialdamping, bendingdamping; /* retardation times tau, s, of N = EA (eps + tau deps/dt) and M alike */
   PetscReal EA, EI, rhoA;                 /* overrides, N, N m^2, kg/m; PETSC_DECIDE (-1): derived from d, E, rho_s */
-  PetscReal velocity[3];                  /* initial velocity, m/s */
-  AncfEnd end0, end1;                     /* boundary conditions at start and end */
+  PetscReal pretension;                   /* axial force in the initial shape, N; default 0 */
+  PetscReal curvature, normal[3]; /* the axis is an arc from start to end, free of bending: 1/m, turning about the normal */
+  PetscReal velocity[3];          /* initial velocity, m/s */
+  AncfEnd end0, end1;             /* boundary conditions at start and end */
 } AncfBeamSpec;
 
 /* An empty set of beams. comm: communicator of one rank: beams are not shared out among processes. ancf: the new set. */
@@ -179,8 +181,9 @@ FROND_EXTERN PetscErrorCode AncfSetMoment(Ancf ancf, PetscInt beam, PetscInt nod
 FROND_EXTERN PetscErrorCode AncfClearLoads(Ancf ancf);
 /*
   Centreline and section forces; each output may be NULL. beam: number. s: fraction of the length, in [0, 1]. r: 3, m. N:
-  axial force EA eps, N. kappa: 3, curvature vector r' x r''/|r'|^3 (engineering strains: over |r'|^2), 1/m. M: 3, bending
-  moment EI kappa, N m. Source: the paper, Eqs. 26 and 27.
+  axial force EA (eps - eps0), N. kappa: 3, curvature vector r' x r''/|r'|^3 (engineering strains: over |r'|^2), 1/m. M: 3,
+  bending moment EI (kappa - kappa0), N m; eps0 and kappa0: without stress. Damping is not in them. Source: the paper, Eqs. 26
+  and 27.
 */
 FROND_EXTERN PetscErrorCode AncfGetSection(Ancf ancf, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal *N,
                                            PetscReal kappa[3], PetscReal M[3]);

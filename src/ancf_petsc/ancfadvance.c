@@ -129,6 +129,7 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(AncfMoveNodes(ancf, t));
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
+  if (!ierr) ierr = AncfCheckPlane(ancf, ancf->e, t);
   if (ierr) PetscCall(AncfStateLoad(ancf, t0, ancf->backup));
   PetscCall(ierr);
   ancf->t = t;

@@ -41,6 +41,11 @@ static PetscErrorCode AncfGroupCreate(Ancf ancf, PetscInt first, PetscInt last, 
   g->rest += 6 * node;
   g->fixed += node;
   g->mass += 8 * node;
+  if (ancf->natural) {
+    g->natural += (ancf->rule.axial.n + ancf->rule.bending.n) * node;
+    g->normal += 3 * node;
+    g->shape += 6 * node;
+  }
   if (ancf->viscous) {
     g->spin += 3 * first;
     g->spinsum += 9 * first;

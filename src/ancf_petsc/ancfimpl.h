@@ -79,6 +79,8 @@ struct _p_Ancf {
   PetscInt naxial, nbending, substeps;
   AncfRule rule;
   PetscReal gravity[3], fluiddensity, damping, stiffnessdamping;
+  PetscReal *natural; /* strain and curvature without stress at the Gauss points of the element after each node; NULL: zero */
+  PetscReal *normal, *shape; /* of the plane of curved beams, nodes x 3; initial coordinates, nodes x 6; with natural */
   PetscBool viscous;         /* some beam has internal damping */
   PetscReal *spin, *spinsum; /* see ancfviscous.h: per beam 3 and, to work with, 9; NULL without internal damping */
   PetscReal *damped;         /* a + damping v, nodes x 6 */
@@ -206,6 +208,9 @@ extern PetscBool AncfIsDependent(const Ancf ancf, PetscInt coordinate);
 extern PetscErrorCode AncfSetUpWeight(Ancf ancf);
 extern void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscReal Q[3], PetscReal dQ[9]);
 
+extern void AncfMeasure(AncfStrain strain, PetscReal l, PetscReal xi, const PetscReal e[12], PetscReal r[3], PetscReal *eps,
+                        PetscReal kappa[3]);
+
 /* ancf.c */
 extern PetscErrorCode AncfSetUpBatches(Ancf ancf);
 extern PetscErrorCode AncfSetUpLaneBeams(Ancf ancf);
@@ -260,6 +265,18 @@ extern void AncfViscousChain(Ancf ancf, const PetscInt chain[ANCF_LANES], PetscI
                              const PetscReal *spin, PetscReal gv, AncfLanes K[ANCF_TANGENT]);
 extern PetscErrorCode AncfAssembleViscous(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal shift,
                                           Mat P);
+
+/* ancfrest.c: curved and prestressed beams; the first two only if ancf->natural. node: of each lane's element, -1: none. */
+extern void AncfRestForce(const Ancf ancf, const PetscInt node[ANCF_LANES], const AncfSection *s, const AncfLanes e[12],
+                          AncfLanes Q[12], AncfLanes *U);
+extern void AncfRestTangent(const Ancf ancf, const PetscInt node[ANCF_LANES], const AncfSection *s, const AncfLanes e[12],
+                            AncfLanes K[ANCF_TANGENT]);
+extern void AncfRestSection(const Ancf ancf, const AncfBeam *m, PetscInt node, PetscReal xi, PetscReal *eps, PetscReal kappa[3]);
+extern PetscErrorCode AncfSetUpRest(Ancf ancf);
+extern PetscErrorCode AncfCheckRest(Ancf ancf, const AncfBeamSpec *s);
+extern PetscErrorCode AncfCheckPlane(Ancf ancf, const PetscReal *e, PetscReal t);
+extern PetscReal AncfSpecLength(const AncfBeamSpec *s);
+extern void AncfSpecPoint(const AncfBeamSpec *s, PetscReal xi, PetscReal e[6]);
 
 /* ancfgroup.c */
 extern PetscErrorCode AncfGroupSetUp(Ancf ancf);

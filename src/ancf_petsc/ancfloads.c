@@ -134,41 +134,51 @@ void AncfMomentForce(const PetscReal M[3], const PetscReal r[3], PetscReal Q[3],
       for (int j = 0; j < 3; j++) dQ[3 * i + j] = cross[3 * i + j] / a - 2 * Q[i] * r[j] / a;
 }
 
+/* Position, strain and curvature vector of one element at xi. */
+void AncfMeasure(AncfStrain strain, PetscReal l, PetscReal xi, const PetscReal e[12], PetscReal r[3], PetscReal *eps,
+                 PetscReal kappa[3])
+{
+  PetscReal S[4], S1[4], S2[4], r1[3] = {0}, r2[3] = {0}, a, p;
+
+  AncfShape(xi, l, S);
+  AncfShapeX(xi, l, S1);
+  AncfShapeXX(xi, l, S2);
+  r[0] = r[1] = r[2] = 0;
+  for (int i = 0; i < 4; i++)
+    for (int c = 0; c < 3; c++) {
+      r[c] += S[i] * e[3 * i + c];
+      r1[c] += S1[i] * e[3 * i + c];
+      r2[c] += S2[i] * e[3 * i + c];
+    }
+  a = r1[0] * r1[0] + r1[1] * r1[1] + r1[2] * r1[2];
+  p = strain == ANCF_STRAIN_PAPER ? a * PetscSqrtReal(a) : a;
+  *eps = strain == ANCF_STRAIN_PAPER ? (a - 1) / 2 : PetscSqrtReal(a) - 1;
+  for (int c = 0; c < 3; c++) kappa[c] = (r1[(c + 1) % 3] * r2[(c + 2) % 3] - r1[(c + 2) % 3] * r2[(c + 1) % 3]) / p;
+}
+
 /*
   AncfGetSection - centreline and section forces at the fraction s of a beam's length; any output may be NULL.
 
-  r: position, m. N: axial force EA eps, N. kappa: curvature vector r' x r''/|r'|^3, or over |r'|^2 with engineering strains, 1/m.
-  M: bending moment EI kappa, N m. Strains are most accurate at the Gauss points of the elements.
+  r: position, m. N: axial force EA (eps - eps0), N. kappa: curvature vector r' x r''/|r'|^3, or over |r'|^2 with engineering
+  strains, 1/m. M: bending moment EI (kappa - kappa0), N m. Strains are most accurate at the Gauss points of the elements.
 */
 PetscErrorCode AncfGetSection(Ancf ancf, PetscInt beam, PetscReal s, PetscReal r[3], PetscReal *N, PetscReal kappa[3],
                               PetscReal M[3])
 {
-  PetscReal xi = 0, S[4], S1[4], S2[4], x[3] = {0}, r1[3] = {0}, r2[3] = {0}, a, l, p;
+  PetscReal xi = 0, x[3], k[3], k0[3], eps, eps0;
   PetscInt node = 0;
+  const AncfBeam *m;
 
   PetscFunctionBegin;
   PetscCall(FindElement(ancf, "AncfGetSection", beam, s, &node, &xi));
-  l = ancf->beams[beam].l;
-  AncfShape(xi, l, S);
-  AncfShapeX(xi, l, S1);
-  AncfShapeXX(xi, l, S2);
-  for (int i = 0; i < 4; i++)
-    for (int c = 0; c < 3; c++) {
-      const PetscReal e = ancf->e[6 * node + 3 * i + c];
-
-      x[c] += S[i] * e;
-      r1[c] += S1[i] * e;
-      r2[c] += S2[i] * e;
-    }
-  a = r1[0] * r1[0] + r1[1] * r1[1] + r1[2] * r1[2];
-  p = ancf->strain == ANCF_STRAIN_PAPER ? a * PetscSqrtReal(a) : a;
-  if (N) *N = ancf->beams[beam].EA * (ancf->strain == ANCF_STRAIN_PAPER ? (a - 1) / 2 : PetscSqrtReal(a) - 1);
+  m = &ancf->beams[beam];
+  AncfMeasure(ancf->strain, m->l, xi, ancf->e + 6 * node, x, &eps, k);
+  AncfRestSection(ancf, m, node, xi, &eps0, k0);
+  if (N) *N = m->EA * (eps - eps0);
   for (int c = 0; c < 3; c++) {
-    const PetscReal k = (r1[(c + 1) % 3] * r2[(c + 2) % 3] - r1[(c + 2) % 3] * r2[(c + 1) % 3]) / p;
-
     if (r) r[c] = x[c];
-    if (kappa) kappa[c] = k;
-    if (M) M[c] = ancf->beams[beam].EI * k;
+    if (kappa) kappa[c] = k[c];
+    if (M) M[c] = m->EI * (k[c] - k0[c]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

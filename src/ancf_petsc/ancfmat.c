@@ -56,6 +56,7 @@ PetscErrorCode AncfAssembleElements(Ancf ancf, const PetscReal *e, PetscInt stri
     if (e) {
       AncfGather(ancf, b, e, stride, ancf->rest, x);
       AncfElementTangent(&ancf->rule, &s, x, Q, K);
+      if (ancf->natural) AncfRestTangent(ancf, b->node, &s, x, K);
     } else
       PetscCall(PetscMemcpy(K, zero, sizeof(K)));
     for (PetscInt i = 0; i < b->n; i++) {
@@ -329,6 +330,12 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
       mass[i] = s->shift * b->rhoA * b->l;
     }
     AncfElementTangent(&s->ancf->rule, &sec, e, Q, K);
+    if (s->ancf->natural) {
+      PetscInt node[ANCF_LANES];
+
+      for (int i = 0; i < ANCF_LANES; i++) node[i] = sec.EA[i] > 0 ? s->first[chain[i]] + k : -1;
+      AncfRestTangent(s->ancf, node, &sec, e, K);
+    }
     if (s->v) AncfViscousChain(s->ancf, chain, k, e, s->v, s->spin, s->gv, K);
     ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];
@@ -358,6 +365,7 @@ static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
 
     AncfGather(ancf, b, s->e, 6, ancf->rest, e);
     AncfElementTangent(&ancf->rule, &sec, e, Q, K);
+    if (ancf->natural) AncfRestTangent(ancf, b->node, &sec, e, K);
     if (s->v) AncfViscousBatch(ancf, b, s->spin, e, s->v, 6, 1, s->gv, H);
     for (PetscInt i = 0; i < b->n; i++) {
       AncfElementMatrix(ancf, b, i, K, s->shift, k);

@@ -18,6 +18,7 @@ PetscErrorCode AncfElasticEnergy(Ancf ancf, PetscReal *W)
 
     AncfGather(ancf, b, ancf->e, 6, ancf->rest, e);
     AncfElementForce(&ancf->rule, &s, e, Q, &U);
+    if (ancf->natural) AncfRestForce(ancf, b->node, &s, e, Q, &U);
     for (PetscInt i = 0; i < b->n; i++) w += U[i];
   }
   *W = w;
@@ -35,6 +36,7 @@ static void ResidualElements(Ancf ancf, const PetscReal *e, PetscInt stride, con
 
     AncfGather(ancf, b, e, stride, ancf->rest, x);
     AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+    if (ancf->natural) AncfRestForce(ancf, b->node, &s, x, Q, NULL);
     if (a) {
       AncfGather(ancf, b, a, astride, ancf->restm, x);
       AncfElementInertia(AncfLoad(b->rhoA), s.l, x, Q);
@@ -68,6 +70,12 @@ static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e,
       for (int i = 0; i < ANCF_LANES && k >= b->least; i++)
         if (k >= b->elements[i]) AncfIdleLane(i, &s, &mass, x);
       AncfElementForce(&ancf->rule, &s, x, Q, NULL);
+      if (ancf->natural) {
+        PetscInt node[ANCF_LANES];
+
+        for (int i = 0; i < ANCF_LANES; i++) node[i] = k < b->elements[i] ? b->first[i] + k : -1;
+        AncfRestForce(ancf, node, &s, x, Q, NULL);
+      }
       if (a) {
         AncfGatherLane(ancf, b, k + 1, a, astride, ancf->restm, y + 6);
         AncfElementInertia(mass, s.l, y, Q);

@@ -155,6 +155,7 @@ PetscErrorCode AncfSolveStatic(Ancf ancf, PetscInt loadsteps)
   PetscCall(AncfWorstNode(ancf, snes, &node, &size));
   if (reason > 0) {
     PetscCall(VecGetArray(X, &x));
+    PetscCall(AncfCheckPlane(ancf, x, ancf->t));
     PetscCall(PetscArrayzero(ancf->v, n));
     PetscCall(AncfSetState(ancf, ancf->t, x, ancf->v));
     PetscCall(VecRestoreArray(X, &x));

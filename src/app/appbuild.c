@@ -48,6 +48,9 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
   for (PetscInt b = 0; b < s->nbeams; b++) {
     AppDoing(app, "beam '%s'", s->beams[b].name);
     if (app->dim == 2) PetscCall(plate_section(&s->beams[b].spec));
+    PetscCheck(!s->fluid || s->beams[b].spec.curvature == 0, PETSC_COMM_SELF, PETSC_ERR_SUP,
+               "beam_%s_curvature = %g 1/m: beams in a fluid must be straight at first", s->beams[b].name,
+               (double)s->beams[b].spec.curvature);
     PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
     AppDoing(app, "%s", "");
   }

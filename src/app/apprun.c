@@ -274,9 +274,9 @@ static PetscErrorCode print_structures(App *app)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < app->scene.nbeams; b++) {
     const AncfBeamSpec *spec = &app->scene.beams[b].spec;
-    PetscReal L2 = 0;
-    for (int a = 0; a < 3; a++) L2 += PetscSqr(spec->end[a] - spec->start[a]);
-    PetscCall(AppBeamPoint(app, b, PetscSqrtReal(L2), r, v, NULL));
+    PetscReal l;
+    PetscCall(AncfGetBeam(app->ancf, b, NULL, NULL, &l));
+    PetscCall(AppBeamPoint(app, b, l * (PetscReal)spec->elements, r, v, NULL));
     printf("  beam %-12s tip at (%.6g, %.6g, %.6g) m\n", app->scene.beams[b].name, (double)r[0], (double)r[1], (double)r[2]);
   }
   for (PetscInt b = 0; b < app->scene.nlumped; b++) {

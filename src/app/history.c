@@ -64,7 +64,7 @@ static PetscErrorCode put3(AppHistory h, const char stem[], const char unit[], c
 static PetscErrorCode put_beams(AppHistory h, App *app)
 {
   const char *energy = app->dim == 2 ? "J/m" : "J";
-  PetscReal kinetic, elastic, potential, dissipation, r[3], v[3], reaction[3], L;
+  PetscReal kinetic, elastic, potential, dissipation, r[3], v[3], reaction[3], l;
   char stem[96];
   PetscInt steps, newton, linear;
 
@@ -72,9 +72,8 @@ static PetscErrorCode put_beams(AppHistory h, App *app)
   if (!app->ancf) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < app->scene.nbeams; b++) {
     const AncfBeamSpec *spec = &app->scene.beams[b].spec;
-    const PetscReal d[3] = {spec->end[0] - spec->start[0], spec->end[1] - spec->start[1], spec->end[2] - spec->start[2]};
-    L = norm3(d);
-    PetscCall(AppBeamPoint(app, b, L, r, v, NULL));
+    PetscCall(AncfGetBeam(app->ancf, b, NULL, NULL, &l));
+    PetscCall(AppBeamPoint(app, b, l * (PetscReal)spec->elements, r, v, NULL));
     PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_tip_", app->scene.beams[b].name));
     PetscCall(put3(h, stem, "m", "position of the beam's last end", r));
     PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_tip_v", app->scene.beams[b].name));

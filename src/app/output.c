@@ -253,12 +253,12 @@ static PetscErrorCode write_beam(AppOutput out, App *app, PetscInt beam, int64_t
 {
   const AncfBeamSpec *spec = &app->scene.beams[beam].spec;
   PetscInt n = out->series.points[beam];
-  PetscReal *v, *s, L = 0, *r = out->vector, *stretch = out->scalar;
+  PetscReal *v, *s, l, L, *r = out->vector, *stretch = out->scalar;
   int64_t g, h;
 
   PetscFunctionBegin;
-  for (PetscInt a = 0; a < 3; a++) L += PetscSqr(spec->end[a] - spec->start[a]);
-  L = PetscSqrtReal(L);
+  PetscCall(AncfGetBeam(app->ancf, beam, NULL, NULL, &l));
+  L = l * (PetscReal)spec->elements;
   PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &s));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal rx[3];

@@ -45,6 +45,9 @@ static PetscErrorCode lumped_from_beam(const SceneBeam *beam, SceneLumped *lumpe
   PetscCheck(from->axialdamping == 0 && from->bendingdamping == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
              "beam_%s_axial_damping = %g, bending_damping = %g s: a lumped beam is damped by beam_%s_hinge_damping", beam->name,
              (double)from->axialdamping, (double)from->bendingdamping, beam->name);
+  PetscCheck(from->pretension == 0 && from->curvature == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "beam_%s_pretension = %g N, curvature = %g 1/m: a lumped beam is straight and without stress at first", beam->name,
+             (double)from->pretension, (double)from->curvature);
   PetscCheck(spec->trunks >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "beam_%s_trunks = %" PetscInt_FMT " must be 1 or more (0: as many as elements)", beam->name, spec->trunks);
   PetscCall(PetscStrncpy(lumped->name, beam->name, APP_NAME_LEN));
