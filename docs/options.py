@@ -24,6 +24,7 @@ TITLES = [
     ("Scene: run and output", "Run and output"),
     ("SPH fluid options", "Fluid"),
     ("Coupling options", "Coupling"),
+    ("Attachment options", "Beams attached to bodies"),
     ("Slender beams (ANCF)", "Beam solver"),
     ("Rigid bodies", "Rigid body solver"),
     ("Short-range forces", "Short-range forces of rigid bodies and beams"),

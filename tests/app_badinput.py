@@ -103,6 +103,19 @@ bad(PAIR + "-link_knee_nodes rod.end,arm.start -ancf_pc_type blocktri", "ancf_pc
 bad("-links knee -link_knee_nodes rod.end,rod.start", "link 'knee'", r"0\.15 m")
 bad("-links knee -beam_rod_type lumped -link_knee_nodes rod.end,rod.start", "link_knee_nodes", "'rod' is lumped", "joints")
 
+# Links to bodies: rod's end lies 0.05 m off the ball.
+HELD = ("-body_ball_motion free -body_ball_position 0.25,0.2,0.2 -links held -link_held_nodes rod.end -link_held_body ball "
+        "-beam_rod_end 0.19,0.2,0.2 ")
+bad(HELD + "-link_held_body box", "link_held_body", "no body 'box'")
+bad(HELD + "-bodies none", "link_held_body|body_ball", "no body 'ball'|does not list")
+bad(HELD + "-link_held_nodes rod.start", "link 'held'", "beam_rod_end0 = clamp", "leave it free")
+bad(HELD + "-body_ball_position 0.32,0.2,0.2", "link 'held'", r"0\.07 m outside of body", "diameter")
+bad(HELD + "-link_held_nodes rod.end,rod.2", "link 'held'", "already")
+bad(HELD + "-body_ball_velocity 0,0,1", "link 'held'", "same velocity", r"\(0\.?, 0\.?, 1")
+bad(HELD + "-body_ball_omega 0,0,1 -body_ball_position 0.19,0.2,0.2 -link_held_type rigid", "on top|overlap|closer|link 'held'")
+bad(HELD + "-couple_attach_iterations 0", "couple_attach_iterations", "1 or more")
+bad(HELD + "-couple_attach_tolerance 1", "couple_attach_tolerance", r"\(0, 1\)")
+
 # Options that nobody knows, and values that are none.
 bad("-beam_rod_yuong 1e6", "unknown option beam_rod_yuong", "beam_rod_young")
 bad("-sph_viscosty 2", "unknown option sph_viscosty", "sph_viscosity")

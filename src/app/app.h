@@ -80,7 +80,9 @@ typedef struct {
 /* Nodes of ANCF beams held together. */
 typedef struct {
   char name[APP_NAME_LEN], text[PETSC_MAX_PATH_LEN]; /* text: its nodes as given */
+  char body[PETSC_MAX_PATH_LEN];                     /* they are attached to it; empty: held together */
   PetscInt type, n, *beam, *node;                    /* type: 0 ball, 1 rigid; n nodes */
+  PetscInt first;                                    /* its first attachment */
 } SceneLink;
 
 /* A regular grid of points; lo = hi along an axis makes a slice or a line. */
@@ -154,6 +156,7 @@ typedef struct {
   Ancf ancf;              /* NULL without beams */
   Rigid rigid;            /* NULL without bodies */
   Couple couple;          /* NULL without fluid */
+  CoupleAttach attach;    /* NULL without links to bodies */
   CoupleShort shortrange; /* of the beams; NULL without beams and in 2D */
   PetscInt dim, nsurfaces;
   AppSurface *surfaces;
@@ -231,6 +234,7 @@ PetscErrorCode AppSceneReadLinks(AppScene *scene);
 PetscErrorCode AppSceneFreeLinks(AppScene *scene);
 PetscErrorCode AppBuildLinks(App *app);
 PetscErrorCode AppSetUpBeams(App *app);
+PetscErrorCode AppBuildAttach(App *app);
 
 /* appfluid.c */
 PetscErrorCode AppFluidFill(App *app);

@@ -99,6 +99,7 @@ static PetscErrorCode build_structures(App *app)
   if (app->sph && app->scene.buoyancy == BUOYANCY_ARCHIMEDES) PetscCall(SphGetDensity(app->sph, &rho));
   PetscCall(build_beams(app, rho));
   PetscCall(build_bodies(app, rho));
+  PetscCall(AppBuildAttach(app));
   PetscCall(AppBuildShortBeams(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -231,6 +232,7 @@ static PetscErrorCode build_couple(App *app)
   PetscCall(CoupleSetSph(app->couple, app->sph));
   PetscCall(CoupleSetFromOptions(app->couple));
   PetscCall(CoupleSetShort(app->couple, app->shortrange));
+  PetscCall(CoupleSetAttach(app->couple, app->attach));
   PetscCall(check_places(app));
   PetscCall(AppFluidFill(app));
   PetscCall(add_walls(app));
@@ -272,6 +274,7 @@ PetscErrorCode AppDestroy(App *app)
   PetscCall(PetscFree(app->surfaces));
   PetscCall(SphDestroy(&app->sph));
   PetscCall(CoupleShortDestroy(&app->shortrange));
+  PetscCall(CoupleAttachDestroy(&app->attach));
   PetscCall(AncfDestroy(&app->ancf));
   PetscCall(RigidDestroy(&app->rigid));
   for (int f = 0; f < 6; f++) PetscCall(RigidDestroy(&app->mover[f]));
@@ -298,8 +301,9 @@ PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt)
     PetscCall(AncfZeroLoads(app->ancf));
     PetscCall(CoupleShortApply(app->shortrange, t - app->t));
   }
-  if (app->ancf) PetscCall(AncfAdvance(app->ancf, t));
-  if (app->rigid) PetscCall(RigidAdvance(app->rigid, t));
+  if (app->attach) PetscCall(CoupleAttachAdvance(app->attach, t));
+  if (app->ancf && !app->attach) PetscCall(AncfAdvance(app->ancf, t));
+  if (app->rigid && !app->attach) PetscCall(RigidAdvance(app->rigid, t));
   if (app->shortrange) PetscCall(CoupleShortRemove(app->shortrange));
   *dt = t - app->t;
   app->t = t;

@@ -132,5 +132,6 @@ PetscErrorCode AppMoveState(App *app, FrondState *s)
   if (app->couple) PetscCall(CoupleMoveState(app->couple, s));
   if (app->ancf) PetscCall(AncfMoveState(app->ancf, s));
   if (app->rigid) PetscCall(RigidMoveState(app->rigid, s));
+  if (app->attach && !app->couple) PetscCall(CoupleAttachMoveState(app->attach, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,6 +68,17 @@ static PetscErrorCode ancf_options(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode attach_options(void)
+{
+  CoupleAttach attach;
+
+  PetscFunctionBegin;
+  PetscCall(CoupleAttachCreate(PETSC_COMM_SELF, NULL, NULL, &attach));
+  PetscCall(CoupleAttachSetFromOptions(attach));
+  PetscCall(CoupleAttachDestroy(&attach));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode rigid_options(void)
 {
   Rigid rigid;
@@ -106,6 +117,7 @@ PetscErrorCode AppHelp(void)
   PetscCall(sph_options());
   PetscCall(rigid_options());
   PetscCall(couple_options());
+  PetscCall(attach_options());
   PetscCall(ancf_options());
   PetscCall(PetscOptionsClearValue(NULL, "-help")); /* else PetscFinalize() adds to it */
   PetscFunctionReturn(PETSC_SUCCESS);

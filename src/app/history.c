@@ -143,6 +143,26 @@ static PetscErrorCode put_bodies(AppHistory h, App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What bodies exert on the beams attached to them. */
+static PetscErrorCode put_links(AppHistory h, App *app)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < app->scene.nlinks; i++) {
+    const SceneLink *l = &app->scene.links[i];
+    PetscReal F[3], sum[3] = {0, 0, 0};
+    char stem[96];
+
+    if (!l->body[0]) continue;
+    for (PetscInt k = 0; k < l->n; k++) {
+      PetscCall(CoupleAttachGetForce(app->attach, l->first + k, F, NULL));
+      for (int a = 0; a < 3; a++) sum[a] += F[a];
+    }
+    PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_f", l->name));
+    PetscCall(put3(h, stem, app->dim == 2 ? "N/m" : "N", "force of the body on the beams of this link, last step", sum));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode put_surfaces(AppHistory h, App *app)
 {
   const PetscBool flat = (PetscBool)(app->dim == 2);
@@ -257,6 +277,7 @@ static PetscErrorCode fill_row(AppHistory h, App *app, PetscReal dt)
   PetscCall(put(h, "dt", "s", "last time step", dt));
   PetscCall(put_beams(h, app));
   PetscCall(put_bodies(h, app));
+  PetscCall(put_links(h, app));
   PetscCall(put_fluid(h, app));
   PetscCall(AppProbesPut(app, put, h));
   h->known = PETSC_TRUE;

@@ -132,6 +132,7 @@ static PetscErrorCode write_settings(const App *app, const char dir[])
   PetscCall(PetscOptionsView(NULL, viewer));
   if (app->couple) PetscCall(CoupleView(app->couple, viewer));
   if (app->shortrange && !app->couple) PetscCall(CoupleShortView(app->shortrange, viewer));
+  if (app->attach && !app->couple) PetscCall(CoupleAttachView(app->attach, viewer));
   if (app->sph) PetscCall(SphView(app->sph, viewer));
   if (app->ancf) PetscCall(AncfView(app->ancf, viewer));
   if (app->rigid) PetscCall(RigidView(app->rigid, viewer));

@@ -1,5 +1,6 @@
 /*
-  scenelink.c - what a scene says about links, which hold nodes of ANCF beams together, and the joints made of it.
+  scenelink.c - what a scene says about links, which hold nodes of ANCF beams together or attach them to a rigid body, and the
+  joints and attachments made of it.
 
   A node is written <beam>.<node>: start, end or a number, 0 being the beam's start.
 */
@@ -14,6 +15,8 @@ static PetscErrorCode read_link(const char prefix[], const char title[], SceneLi
 {
   const AppOpt opt[] = {
       {OPT_CHOICE, "type", "Ball: one position; rigid: the tangents turn together too", &l->type, types, NULL},
+      {OPT_STRING, "body", "Rigid body, or trunk of a lumped beam, that the nodes are attached to (default: none)", l->body, NULL,
+       NULL},
       {OPT_STRING, "nodes", "Nodes held together, as <beam>.<node> with start, end or a number, separated by commas (needed)",
        l->text, NULL, NULL},
   };
@@ -65,7 +68,7 @@ static PetscErrorCode take_nodes(const AppScene *s, SceneLink *l)
   PetscCall(PetscStrallocpy(l->text, &copy));
   for (char *at = strtok(copy, ", \t"); at; at = strtok(NULL, ", \t")) PetscCall(take_node(s, l, at));
   PetscCall(PetscFree(copy));
-  PetscCheck(l->n >= 2, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+  PetscCheck(l->n >= 2 || l->body[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
              "link_%s_nodes = '%s': %" PetscInt_FMT " node; a link needs 2 or more", l->name, l->text, l->n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,12 +134,13 @@ static PetscErrorCode check_nodes(const AppScene *s, PetscInt number)
     PetscReal d = 0, length = 0;
 
     for (PetscInt m = 0; m <= number; m++)
-      for (PetscInt i = 0; i < (m < number ? s->links[m].n : k); i++)
+      for (PetscInt i = 0; i < (m < number ? s->links[m].n : k) && !s->links[m].body[0] == !l->body[0]; i++)
         PetscCheck(s->links[m].beam[i] != l->beam[k] || s->links[m].node[i] != l->node[k], PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
                    "link '%s': node %" PetscInt_FMT
                    " of beam '%s' is in link '%s' already; list all nodes that meet in one link, "
                    "each once",
                    l->name, l->node[k], s->beams[l->beam[k]].name, s->links[m].name);
+    if (l->body[0]) continue;
     place(s, l->beam[k], l->node[k], x);
     for (int a = 0; a < 3; a++) d += PetscSqr(x[a] - x0[a]), length += PetscSqr(spec->end[a] - spec->start[a]);
     PetscCheck(d <= 1e-16 * length / PetscSqr((PetscReal)spec->elements), PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
@@ -144,6 +148,84 @@ static PetscErrorCode check_nodes(const AppScene *s, PetscInt number)
                " of beam '%s'; they must be at the same point",
                l->name, l->node[k], s->beams[l->beam[k]].name, (double)PetscSqrtReal(d), l->node[0], s->beams[l->beam[0]].name);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Supports of the nodes that a body will hold. */
+static PetscErrorCode support_nodes(App *app, const SceneLink *l)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < l->n; k++) {
+    const SceneBeam *b = &app->scene.beams[l->beam[k]];
+    const PetscBool start = l->node[k] == 0 ? PETSC_TRUE : PETSC_FALSE;
+    const AncfEnd end = start ? b->spec.end0 : l->node[k] == b->spec.elements ? b->spec.end1 : ANCF_END_FREE;
+
+    PetscCheck(end == ANCF_END_FREE, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+               "link '%s': beam_%s_end%d = %s, but body '%s' holds this end; leave it free", l->name, b->name, start ? 0 : 1,
+               end == ANCF_END_PIN ? "pin" : "clamp", l->body);
+    PetscCall(AncfFixNode(app->ancf, l->beam[k], l->node[k], l->type ? ANCF_END_CLAMP : ANCF_END_PIN));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A body's point and the beam's node must start with one velocity, or both would be hit at once. */
+static PetscErrorCode check_velocity(const App *app, const SceneLink *l, PetscInt k, PetscInt body)
+{
+  const PetscReal *v = app->scene.beams[l->beam[k]].spec.velocity;
+  PetscReal X[3], V[3], w[3], x[3], d = 0, size = 0;
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetState(app->rigid, body, X, NULL, V, w));
+  place(&app->scene, l->beam[k], l->node[k], x);
+  for (int a = 0; a < 3; a++) {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+
+    V[a] += w[b] * (x[c] - X[c]) - w[c] * (x[b] - X[b]);
+    d += PetscSqr(V[a] - v[a]);
+    size += PetscSqr(v[a]);
+  }
+  PetscCheck(
+      d <= 1e-12 * size, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+      "link '%s': beam '%s' starts with (%g, %g, %g) m/s, but its node's place on body '%s' with (%g, %g, %g); give both the "
+      "same velocity",
+      l->name, app->scene.beams[l->beam[k]].name, (double)v[0], (double)v[1], (double)v[2], l->body, (double)V[0], (double)V[1],
+      (double)V[2]);
+  PetscCheck(!l->type || (w[0] == 0 && w[1] == 0 && w[2] == 0), PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+             "link '%s': body_%s_omega = %g,%g,%g rad/s, but the beam clamped to it starts without turning; start with 0",
+             l->name, l->body, (double)w[0], (double)w[1], (double)w[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The attachments, once beams and bodies are set up. */
+PetscErrorCode AppBuildAttach(App *app)
+{
+  AppScene *s = &app->scene;
+  PetscInt body, any = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->nlinks; i++) any += s->links[i].body[0] != 0;
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (app->rigid) PetscCall(CoupleAttachCreate(PETSC_COMM_SELF, app->ancf, app->rigid, &app->attach));
+  for (PetscInt i = 0; i < s->nlinks; i++) {
+    SceneLink *l = &s->links[i];
+
+    if (!l->body[0]) continue;
+    for (body = 0; body < s->nbodies && strcasecmp(s->bodies[body].name, l->body);) body++;
+    PetscCheck(app->rigid && body < s->nbodies, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "link_%s_body: there is no body '%s'",
+               l->name, l->body);
+    PetscCall(CoupleAttachGetNum(app->attach, &l->first));
+    for (PetscInt k = 0; k < l->n; k++) {
+      PetscCheck(!app->shortrange, PETSC_COMM_SELF, PETSC_ERR_SUP,
+                 "link '%s': short-range forces of beams would push the beam and its body '%s' apart; leave them out", l->name,
+                 l->body);
+      AppDoing(app, "link '%s'", l->name);
+      PetscCall(CoupleAttachAdd(app->attach, l->beam[k], l->node[k], body));
+      AppDoing(app, "%s", "");
+      PetscCall(check_velocity(app, l, k, body));
+    }
+  }
+  PetscCall(CoupleAttachSetFromOptions(app->attach));
+  PetscCall(CoupleAttachSetUp(app->attach));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,7 +242,10 @@ PetscErrorCode AppBuildLinks(App *app)
 
     PetscCall(check_nodes(s, i));
     AppDoing(app, "link '%s'", l->name);
-    PetscCall(AncfAddJoint(app->ancf, l->type ? ANCF_JOINT_RIGID : ANCF_JOINT_BALL, l->n, l->beam, l->node, NULL));
+    if (l->body[0])
+      PetscCall(support_nodes(app, l));
+    else
+      PetscCall(AncfAddJoint(app->ancf, l->type ? ANCF_JOINT_RIGID : ANCF_JOINT_BALL, l->n, l->beam, l->node, NULL));
     AppDoing(app, "%s", "");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -176,7 +261,8 @@ PetscErrorCode AppSetUpBeams(App *app)
   PetscFunctionBegin;
   ierr = AncfSetUp(app->ancf);
   at = ierr && app->errors ? strstr(app->errors->message, "oint ") : NULL;
-  if (at && sscanf(at, "oint %d", &i) == 1 && i >= 0 && i < app->scene.nlinks)
-    AppDoing(app, "link '%s'", app->scene.links[i].name);
+  if (!at || sscanf(at, "oint %d", &i) != 1) PetscFunctionReturn(ierr);
+  for (PetscInt k = 0; k < app->scene.nlinks; k++)
+    if (!app->scene.links[k].body[0] && i-- == 0) AppDoing(app, "link '%s'", app->scene.links[k].name);
   PetscFunctionReturn(ierr);
 }

@@ -212,6 +212,8 @@ PetscErrorCode CoupleAttachSetUp(CoupleAttach l)
     PetscCall(CoupleAttachFollow(l, &l->a[i], e, v));
     PetscCall(AncfSetNodeMotion(l->ancf, l->a[i].beam, l->a[i].node, e, v, zero));
   }
+  PetscCall(AncfGetReactions(l->ancf, l->f1));
+  CoupleAttachSum(l);
   l->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -242,11 +244,16 @@ PetscErrorCode CoupleAttachGetIterations(CoupleAttach l, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void CoupleAttachTotal(CoupleAttach l, PetscReal F[3])
+void CoupleAttachTotal(CoupleAttach l, PetscReal bodies[3], PetscReal held[3], PetscReal ends[3])
 {
-  F[0] = F[1] = F[2] = 0;
-  for (PetscInt i = 0; i < 6 * l->nfree; i++)
-    if (i % 6 < 3) F[i % 6] += l->W[i];
+  for (int c = 0; c < 3; c++) {
+    bodies[c] = held[c] = 0;
+    ends[c] = 0.5 * (l->sum[0][c] + l->sum[1][c]);
+  }
+  for (PetscInt k = 0; k < l->nfree; k++)
+    for (int c = 0; c < 3; c++) bodies[c] += l->W[6 * k + c];
+  for (PetscInt i = 0; i < l->n; i++)
+    for (int c = 0; c < 3 && l->a[i].unknown < 0; c++) held[c] += l->a[i].F[c];
 }
 
 /* What goes on from step to step: wrenches, the matrix, and the forces to report. */
@@ -254,7 +261,7 @@ void CoupleAttachCount(CoupleAttach l, PetscInt *n)
 {
   const PetscInt m = 6 * l->nfree;
 
-  *n = m + m * m + 12 * l->n + 1;
+  *n = m + m * m + 12 * l->n + 7;
 }
 
 static void Swap(PetscBool load, PetscReal **at, PetscReal *x, PetscInt n)
@@ -279,6 +286,7 @@ void CoupleAttachCopy(CoupleAttach l, PetscBool load, PetscReal *state)
     Swap(load, &state, l->a[i].M, 3);
     Swap(load, &state, l->a[i].last, 6);
   }
+  Swap(load, &state, l->sum[0], 6);
   Swap(load, &state, &known, 1);
   l->known = known != 0 ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -34,10 +34,13 @@ struct _p_CoupleAttach {
   PetscReal *W, *B;                     /* 6 nfree wrenches (torque over length), inverse Jacobian of R */
   PetscReal *R, *Rold, *G, *s, *y;      /* 6 nfree each */
   PetscReal *beams, *bodies, *f0, *f1, *f2, *balance;
+  PetscReal sum[2][3];    /* of the beams' reactions at the ends of the last step, N */
   PetscBool setup, known; /* known: reactions of a last step */
 };
 
 /* coupleattachstep.c: B at first; place, velocity and gradient of an attachment's point on its body now (e and v, 6 each). */
+/* Sums of the reactions f1 take their place at the end of a step. */
+extern void CoupleAttachSum(CoupleAttach attach);
 extern void CoupleAttachFirstInverse(CoupleAttach attach);
 extern PetscErrorCode CoupleAttachFollow(CoupleAttach attach, const Attachment *a, PetscReal e[6], PetscReal v[6]);
 

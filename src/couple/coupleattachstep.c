@@ -42,6 +42,15 @@ void CoupleAttachFirstInverse(CoupleAttach l)
   for (PetscInt i = 0; i < m; i++) l->B[i * m + i] = -1 / (1 + l->ratio[i / 6]);
 }
 
+void CoupleAttachSum(CoupleAttach l)
+{
+  for (int c = 0; c < 3; c++) {
+    l->sum[0][c] = l->sum[1][c];
+    l->sum[1][c] = 0;
+    for (PetscInt i = 0; i < l->n; i++) l->sum[1][c] += l->f1[6 * l->a[i].at + c];
+  }
+}
+
 /* Sums over the beams of each set, 12 per set: p, L, F, T. */
 static PetscErrorCode Balances(CoupleAttach l, PetscInt set, PetscReal sum[12])
 {
@@ -341,6 +350,7 @@ PetscErrorCode CoupleAttachAdvance(CoupleAttach l, PetscReal t)
   PetscCall(Load(l, l->W, -1));
   for (PetscInt i = 0; i < l->n; i++) PetscCall(PetscArraycpy(l->a[i].last, l->a[i].raw, 6));
   l->known = PETSC_TRUE;
+  CoupleAttachSum(l);
   PetscCheck(
       done || !m, l->comm, PETSC_ERR_NOT_CONVERGED,
       "the forces between beams and bodies did not converge at t = %g s: relative residual %g after %" PetscInt_FMT

@@ -34,18 +34,16 @@ PetscErrorCode CoupleBalanceStart(Couple c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The beams' supports include the bodies, whose own forces include the beams': take what is between the two out of both. */
-static PetscErrorCode AttachImpulses(Couple c, PetscReal dt)
+/* The beams' supports hold what bodies do to them, and the bodies' weight what beams do: what is between the two goes out. */
+static void AttachImpulses(Couple c, PetscReal dt)
 {
-  PetscReal W[3];
+  PetscReal bodies[3], held[3], ends[3];
 
-  PetscFunctionBegin;
-  CoupleAttachTotal(c->attach, W);
+  CoupleAttachTotal(c->attach, bodies, held, ends);
   for (int k = 0; k < 3; k++) {
-    c->balance.body[k] -= dt * W[k];
-    c->balance.support[k] += dt * W[k];
+    c->balance.body[k] -= dt * bodies[k];
+    c->balance.support[k] += dt * (held[k] - ends[k]);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Impulses of one step: body force and held surfaces exactly, weight and supports as the structure gives them for the step. */
@@ -86,7 +84,7 @@ PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
       b->body[k] -= dt * bodies[k];
     }
   }
-  if (c->attach) PetscCall(AttachImpulses(c, dt));
+  if (c->attach) AttachImpulses(c, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

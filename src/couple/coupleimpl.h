@@ -79,8 +79,8 @@ extern PetscErrorCode CoupleIterationDestroy(Couple couple);
 
 /* coupleattach.c: reals that attachments carry from step to step, to or from an array of so many. */
 extern void CoupleAttachCount(CoupleAttach attach, PetscInt *n);
-/* Force of the beams on all free bodies in the last step, N. */
-extern void CoupleAttachTotal(CoupleAttach attach, PetscReal F[3]);
+/* Last step: force of the beams on all free bodies; of other bodies on the beams; mean of the beams' reactions at its ends, N. */
+extern void CoupleAttachTotal(CoupleAttach attach, PetscReal bodies[3], PetscReal held[3], PetscReal ends[3]);
 extern void CoupleAttachCopy(CoupleAttach attach, PetscBool load, PetscReal *state);
 
 /* couplebalance.c */
