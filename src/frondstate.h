@@ -9,6 +9,7 @@
 #define FRONDSTATE_H
 
 #include "frondsys.h"
+#include <stdint.h>
 #include <string.h>
 
 /* Types of the arrays. */
@@ -31,10 +32,22 @@ static inline size_t FrondStateSize(FrondStateType type)
   return type == FROND_INT32 ? 4 : 8;
 }
 
-/* n values each; x is a pointer of the type named. PetscBool has the size of an int. */
+/* n values each; x is a pointer of the type named. */
 #define FrondMoveReal(s, name, x, n) PetscCall((*(s)->move)(s, name, FROND_REAL64, (size_t)(n), x))
 #define FrondMoveInt(s, name, x, n) PetscCall((*(s)->move)(s, name, FROND_INT, (size_t)(n), x))
 #define FrondMoveInt32(s, name, x, n) PetscCall((*(s)->move)(s, name, FROND_INT32, (size_t)(n), x))
+/* One PetscBool, whose size depends on the version of PETSc, as an int32. */
+#define FrondMoveBool(s, name, x) PetscCall(FrondStateBool(s, name, x))
+
+static inline PetscErrorCode FrondStateBool(FrondState *s, const char name[], PetscBool *x)
+{
+  int32_t value = *x ? 1 : 0;
+
+  PetscFunctionBegin;
+  FrondMoveInt32(s, name, &value, 1);
+  *x = value ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* All arrays one after the other in one piece of memory, without names: for going back within a run. */
 typedef struct {

@@ -330,7 +330,7 @@ static PetscErrorCode State_CPU(Sph sph, FrondState *s)
     PetscCall(Push_CPU(sph));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  FrondMoveInt32(s, "fluid/search_cpu/built", &cpu->built, 1);
+  FrondMoveBool(s, "fluid/search_cpu/built", &cpu->built);
   PetscCall(SphMoveGrid(s, "fluid/search_cpu", &cpu->grid));
   FrondMoveInt(s, "fluid/search_cpu/ranges", &nstart, 1);
   if (load && nstart > cpu->cellcap) {

@@ -377,7 +377,7 @@ static PetscErrorCode State_CUDA(Sph sph, FrondState *s)
     PetscCall(Push_CUDA(sph));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  FrondMoveInt32(s, "fluid/search_cuda/built", &built, 1);
+  FrondMoveBool(s, "fluid/search_cuda/built", &built);
   PetscCall(SphMoveGrid(s, "fluid/search_cuda", &cuda->grid));
   PetscCall(PetscMalloc4(n, &x[0], n, &x[1], n, &x[2], n, &key));
   if (s->way == FROND_STATE_SAVE) {

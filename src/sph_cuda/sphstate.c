@@ -32,7 +32,7 @@ static PetscErrorCode MoveCounts(Sph sph, FrondState *s)
   FrondMoveInt(s, "fluid/left", &sph->left, 1);
   FrondMoveReal(s, "fluid/evaluations", &sph->evaluations, 1);
   FrondMoveReal(s, "fluid/speed_warned", &sph->speedwarned, 1);
-  FrondMoveInt32(s, "fluid/step_warned", &sph->fixedwarned, 1);
+  FrondMoveBool(s, "fluid/step_warned", &sph->fixedwarned);
   FrondMoveInt(s, "fluid/verlet_step", &sph->verletstep, 1);
   FrondMoveReal(s, "fluid/verlet_dt", &sph->dtold, 1);
   FrondMoveReal(s, "fluid/verlet_span", &sph->verletspan, 1);
