@@ -167,6 +167,7 @@ PetscErrorCode CoupleSetUp(Couple c)
   PetscCall(PetscMalloc1(3 * most, &c->work));
   PetscCall(SphSetUp(c->sph));
   PetscCall(CoupleMoveMarkers(c, 0.0));
+  PetscCall(PetscCalloc1(4 * (size_t)PetscMax(1, c->n), &c->ledger));
   c->setup = PETSC_TRUE;
   PetscCall(CoupleBalanceStart(c));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -201,6 +202,7 @@ PetscErrorCode CoupleDestroy(Couple *couple)
   }
   PetscCall(CoupleIterationDestroy(*couple));
   PetscCall(PetscFree((*couple)->work));
+  PetscCall(PetscFree((*couple)->ledger));
   PetscCall(PetscFree((*couple)->slot));
   PetscCall(PetscFree(*couple));
   PetscFunctionReturn(PETSC_SUCCESS);

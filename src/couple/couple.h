@@ -310,5 +310,10 @@ typedef struct {
   arithmetic's precision); with supports it carries the second-order error of integrating their force. balance: to be filled.
 */
 FROND_EXTERN PetscErrorCode CoupleGetBalance(Couple couple, CoupleBalance *balance);
+/*
+  What a surface has received from the fluid since set-up; each output may be NULL. i: number of the surface. work: J, forces
+  times the velocities of the markers that they act on. impulse: 3, angular, about the origin, N m s.
+*/
+FROND_EXTERN PetscErrorCode CoupleGetWork(Couple couple, PetscInt i, PetscReal *work, PetscReal impulse[3]);
 
 #endif

@@ -66,6 +66,8 @@ PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
     PetscReal p[3], weight[3], support[3];
+    c->ledger[4 * i] += dt * s->audit.power;
+    for (int k = 0; k < 3; k++) c->ledger[4 * i + 1 + k] += dt * s->audit.moment[k];
     if (s->surface->held || !s->surface->ops.momentum) {
       for (int k = 0; k < 3; k++) b->wall[k] -= dt * s->audit.force[k];
       continue;
@@ -108,5 +110,18 @@ PetscErrorCode CoupleGetBalance(Couple c, CoupleBalance *balance)
         PetscMax(b->scale, PetscMax(PetscAbsReal(b->body[k]), PetscMax(PetscAbsReal(b->support[k]), PetscAbsReal(b->wall[k]))));
   }
   *balance = *b;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CoupleGetWork - Work (J) and angular impulse about the origin (N m s) that surface i has received from the fluid since set-up.
+@*/
+PetscErrorCode CoupleGetWork(Couple c, PetscInt i, PetscReal *work, PetscReal impulse[3])
+{
+  PetscFunctionBegin;
+  PetscCheck(c->setup && i >= 0 && i < c->n, c->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "surface %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT "), after CoupleSetUp()", i, c->n);
+  if (work) *work = c->ledger[4 * i];
+  if (impulse) PetscCall(PetscArraycpy(impulse, c->ledger + 4 * i + 1, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

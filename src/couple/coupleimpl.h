@@ -48,6 +48,7 @@ struct _p_Couple {
   PetscReal mass;          /* of the fluid, kg; for `left` markers gone */
   PetscInt left;
   CoupleBalance balance; /* impulses accumulated so far */
+  PetscReal *ledger;     /* n x 4: work (J) and angular impulse (N m s) of the fluid on each surface */
 };
 
 extern PetscLogEvent COUPLE_Kinematics, COUPLE_Transfer, COUPLE_Advance;

@@ -85,6 +85,7 @@ PetscErrorCode CoupleMoveState(Couple c, FrondState *s)
   FrondMoveReal(s, "couple/impulse_body", c->balance.body, 3);
   FrondMoveReal(s, "couple/impulse_support", c->balance.support, 3);
   FrondMoveReal(s, "couple/impulse_wall", c->balance.wall, 3);
+  FrondMoveReal(s, "couple/ledger", c->ledger, 4 * c->n);
   for (PetscInt i = 0; i < c->n; i++) PetscCall(MoveSurface(c, i, s));
   if (c->attach) PetscCall(CoupleAttachMoveState(c->attach, s));
   PetscCall(CoupleLoadsMoveState(c, s));

@@ -297,6 +297,18 @@ typedef struct {
 } SphSums;
 /* sums: over the fluid markers now. */
 FROND_EXTERN PetscErrorCode SphGetSums(Sph sph, SphSums *sums);
+/* What balances of energy and angular momentum need besides SphSums; W and kg m^2/s, in 2D per m. */
+typedef struct {
+  PetscReal viscous;               /* heat that viscous forces make between fluid markers and their neighbours, W */
+  PetscReal pressure;              /* power of pressure forces on the relative motion of fluid markers and their neighbours, W */
+  PetscReal angular[3], centre[3]; /* angular momentum about the origin, kg m^2/s; sum of m x over the mass, m */
+} SphAudit;
+/*
+  The audit of the fluid now, from a sum over pairs in double precision on the host: costs about as much as some steps and changes
+  nothing. Boundary markers have the pressure and velocity that the last evaluation gave them. audit: filled. Source: power of
+  each pair force of sphpair.h; their sum is d/dt of the kinetic energy less the work of body and boundary forces.
+*/
+FROND_EXTERN PetscErrorCode SphGetAudit(Sph sph, SphAudit *audit);
 /* Fields at points: the kernel-weighted mean (Shepard), or a linear least squares fit, exact for linear fields also at walls. */
 typedef enum { SPH_INTERPOLATE_SHEPARD, SPH_INTERPOLATE_LINEAR } SphInterpolation;
 /* Names of SphInterpolation. */

@@ -33,7 +33,7 @@ PetscErrorCode SphInterpolate(Sph sph, SphInterpolation how, PetscInt n, const P
     }
   PetscCall(PetscLogEventBegin(SPH_Output, 0, 0, 0, 0));
   PetscCall((*sph->ops->pull)(sph));
-  PetscCall(SphSearchCreate(sph, lo, hi, &search));
+  PetscCall(SphSearchCreate(sph, lo, hi, 0, &search));
 #pragma omp parallel for schedule(dynamic, 64)
   for (PetscInt j = 0; j < n; j++) {
     SphPointSums sums;

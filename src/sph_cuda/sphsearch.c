@@ -1,4 +1,4 @@
-/* sphsearch.c - sums over the fluid markers around a point. */
+/* sphsearch.c - the markers around a point, and sums over the fluid ones. */
 #include <math.h>
 typedef double sphreal;
 #include "sphsearch.h"
@@ -10,12 +10,12 @@ static double Wrapped(const SphParams *p, int k, double x)
   return p->periodic[k] ? x - length * floor((x - p->lo[k]) / length) : x;
 }
 
-/* Whether marker i is wanted: fluid, and within 2h of the box or of its periodic images. */
-static int Wanted(Sph sph, PetscInt i, const PetscReal lo[3], const PetscReal hi[3])
+/* Whether marker i is wanted: fluid, or boundary with those too, and within 2h of the box or of its periodic images. */
+static int Wanted(Sph sph, PetscInt i, const PetscReal lo[3], const PetscReal hi[3], int boundary)
 {
   const SphParams *p = &sph->par;
 
-  if (sph->group[i] != -1) return 0;
+  if (sph->group[i] != -1 && !(boundary && sph->group[i] >= 0)) return 0;
   for (int k = 0; k < p->dim && lo; k++) {
     const double x = sph->st.x[k][i];
     if (!p->periodic[k] && (x < lo[k] - 2.0 * p->h || x > hi[k] + 2.0 * p->h)) return 0;
@@ -48,7 +48,7 @@ static PetscErrorCode GridOf(Sph sph, PetscInt n, const int *pick, SphGrid *g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal hi[3], SphSearch *s)
+PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal hi[3], int boundary, SphSearch *s)
 {
   const SphParams *p = &sph->par;
   SphGrid *g = &s->grid;
@@ -58,12 +58,12 @@ PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal h
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(PetscMax(1, sph->n), &pick, PetscMax(1, sph->n), &cell));
   for (PetscInt i = 0; i < sph->n; i++)
-    if (Wanted(sph, i, lo, hi)) pick[n++] = (int)i;
+    if (Wanted(sph, i, lo, hi, boundary)) pick[n++] = (int)i;
   s->n = n;
   PetscCall(GridOf(sph, n, pick, g));
   ncell = (PetscInt)g->n[0] * g->n[1] * g->n[2];
   PetscCall(PetscCalloc1(ncell + 1, &s->start));
-  PetscCall(PetscMalloc1(8 * (size_t)PetscMax(1, n), &s->work));
+  PetscCall(PetscMalloc2(8 * (size_t)PetscMax(1, n), &s->work, PetscMax(1, n), &s->marker));
   for (int k = 0; k < 3; k++) {
     s->x[k] = s->work + k * n;
     s->v[k] = s->work + (3 + k) * n;
@@ -86,6 +86,7 @@ PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal h
     }
     s->vol[at] = sph->m[i] / (p->rho0 * (1.0 + sph->st.s[i]));
     s->s[at] = sph->st.s[i];
+    s->marker[at] = i;
   }
   for (PetscInt c = 0; c < ncell; c++) s->start[c] = s->start[c + 1];
   s->start[ncell] = (int)n;
@@ -97,7 +98,7 @@ PetscErrorCode SphSearchDestroy(SphSearch *s)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree(s->start));
-  PetscCall(PetscFree(s->work));
+  PetscCall(PetscFree2(s->work, s->marker));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -131,15 +132,14 @@ static int Neighbour(const SphGrid *g, int k, int c, int o, double *shift)
   return c < 0 ? c + g->n[k] : (c >= g->n[k] ? c - g->n[k] : c);
 }
 
-void SphSearchSum(const Sph sph, const SphSearch *s, const PetscReal xp[3], SphPointSums *out)
+int SphSearchRanges(const Sph sph, const SphSearch *s, const PetscReal xp[3], double x[3], SphSearchRange range[27])
 {
   const SphParams *p = &sph->par;
   const SphGrid *g = &s->grid;
-  double x[3] = {0.0, 0.0, 0.0};
-  int c[3] = {0, 0, 0};
+  int c[3] = {0, 0, 0}, n = 0;
 
-  memset(out, 0, sizeof(*out));
-  if (!s->n) return;
+  for (int k = 0; k < 3; k++) x[k] = 0.0;
+  if (!s->n) return 0;
   for (int k = 0; k < p->dim; k++) {
     x[k] = Wrapped(p, k, xp[k]);
     c[k] = sph_cell_coord(g, k, PetscMax(PetscMin(x[k], g->lo[k] + (g->n[k] + 2) * g->edge[k]), g->lo[k] - 2.0 * g->edge[k]));
@@ -150,7 +150,22 @@ void SphSearchSum(const Sph sph, const SphSearch *s, const PetscReal xp[3], SphP
     const int e = p->dim == 3 ? Neighbour(g, 2, c[2], o / 9 - 1, &shift[2]) : 0;
     if (a < 0 || b < 0 || e < 0) continue;
     const int cell = sph_cell_index(g, a, b, e);
-    for (int j = s->start[cell]; j < s->start[cell + 1]; j++) {
+    range[n++] = (SphSearchRange){s->start[cell], s->start[cell + 1], {shift[0], shift[1], shift[2]}};
+  }
+  return n;
+}
+
+void SphSearchSum(const Sph sph, const SphSearch *s, const PetscReal xp[3], SphPointSums *out)
+{
+  const SphParams *p = &sph->par;
+  SphSearchRange range[27];
+  double x[3];
+  const int n = SphSearchRanges(sph, s, xp, x, range);
+
+  memset(out, 0, sizeof(*out));
+  for (int o = 0; o < n; o++) {
+    const double *shift = range[o].shift;
+    for (int j = range[o].first; j < range[o].last; j++) {
       const double d[3] = {(s->x[0][j] + shift[0] - x[0]) / p->h, (s->x[1][j] + shift[1] - x[1]) / p->h,
                            (s->x[2][j] + shift[2] - x[2]) / p->h};
       if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 4.0) AddMarker(p, s, j, d, out);

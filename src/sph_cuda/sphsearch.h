@@ -1,6 +1,6 @@
 /*
-  sphsearch.h - private: fluid markers sorted into cells of edge >= 2h on the host, for sums at arbitrary points (sphgrid.c).
-  The markers are copied; the state's own order is left alone, so that every backend can use it after a pull.
+  sphsearch.h - private: markers sorted into cells of edge >= 2h on the host, for sums at arbitrary points (sphgrid.c) and over
+  pairs (sphaudit.c). The markers are copied; the state's own order is left alone, so that every backend can use it after a pull.
 */
 #ifndef SPHSEARCH_H
 #define SPHSEARCH_H
@@ -15,6 +15,7 @@ typedef struct {
   double *v[3]; /* m/s */
   double *vol;  /* m/rho, m^3 */
   double *s;    /* rho/rho0 - 1 */
+  int *marker;  /* which one of the state */
   double *work; /* the memory of the above */
 } SphSearch;
 
@@ -25,9 +26,17 @@ typedef struct {
   PetscInt markers; /* how many */
 } SphPointSums;
 
-/* Which fluid markers: those within 2h of the box (lo, hi), all of them when lo is NULL. */
-extern PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal hi[3], SphSearch *search);
+/* A cell's markers [first, last) and by how much their images are displaced, m. */
+typedef struct {
+  int first, last;
+  double shift[3];
+} SphSearchRange;
+
+/* Which fluid markers, and boundary markers too: those within 2h of the box (lo, hi), all of them when lo is NULL. */
+extern PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal hi[3], int boundary, SphSearch *search);
 extern PetscErrorCode SphSearchDestroy(SphSearch *search);
+/* The cells around the point, which comes back wrapped into the period; returns how many. */
+extern int SphSearchRanges(const Sph sph, const SphSearch *search, const PetscReal at[3], double x[3], SphSearchRange range[27]);
 extern void SphSearchSum(const Sph sph, const SphSearch *search, const PetscReal x[3], SphPointSums *sums);
 
 /*
