@@ -1,19 +1,25 @@
 #!/usr/bin/python3
 """Which time integrator and step ratio for the beams? Sweep TS type x fluid/beam step ratio x Young's modulus over a scene.
 
-    python3 examples/study_substeps.py examples/beam_vacuum.yaml --out study -- -time_end 0.5
-    python3 examples/study_substeps.py examples/cantilever_fluid.yaml --young 2e7 2e9 -- -sph_dp 0.04 -time_end 0.1
+    frond study substeps examples/beam_vacuum.yaml --out study -- -time_end 0.5
+    frond study substeps examples/cantilever_fluid.yaml --young 2e7 2e9 -- -sph_dp 0.04 -time_end 0.1
 
-Everything behind -- goes to every run. Each run is compared with a reference of its modulus: generalised-alpha with spectral radius 1 and
---reference beam steps in a fluid step. Written to --out: study.csv, study.h5 (the same table) and study.png. Columns: error is the rms over the
-run of the distance of the first beam's tip from the reference's, m; steps, Newton and linear iterations are the beams'; wall is the
-whole run's wall time, s. A run is `unstable` when it stops with an error, when a value is not finite, or when the tip ends more than --blowup (m)
-off the reference; `refused` when the type cannot take the problem.
+Everything behind -- goes to every run. A scene without fluid is a beam alone. Each run is compared with a reference of its modulus: generalised-alpha
+with spectral radius 1 and --reference beam steps in a step of the scene. Written to --out: study.csv, study.h5 (the same table) and study.png. Columns:
+young (Pa), type, ratio; verdict; predicted; z = omega_max h of the beam's straight shape, h the beam's step; error: rms over the run of the distance of
+the first beam's tip from the reference's (m); energy: energy gained over the run, in parts of the largest kinetic energy (without fluid and damping);
+steps, newton, linear: of the beams; wall: of the whole run (s).
+
+verdict: refused: the type cannot take the problem. blown up: the run stopped, or a value is not finite. unstable: the tip ends more than --blowup
+beam lengths off the reference, or more than 10 % of energy came from nowhere. stable: else.
+predicted, for an undamped beam: from the growth max |R(i omega h)|^steps over the beam's modes: stable up to 10, unstable from 1e6 (round-off is
+then visible), growing between; implicit types here are A-stable.
 """
 import argparse
 import csv
 import math
 import os
+import re
 import subprocess
 import sys
 import time
@@ -28,6 +34,12 @@ TYPES = {
     "irk": "-ancf_ts_type irk -ancf_ts_irk_nstages 2",
     "dirk": "-ancf_ts_type dirk -ancf_ts_adapt_type none",
 }
+EXPLICIT_ORDER = {"rk2": 2, "rk4": 4}  # R(z) is the exponential series up to the order
+UNITS = {"young": "Pa", "error": "m", "wall": "s"}
+
+
+def fail(text):
+    sys.exit("frond: error: study substeps: " + text)
 
 
 def simulate(a, out, options):
@@ -49,8 +61,52 @@ def simulate(a, out, options):
     return time.monotonic() - start, code, errors[-1] if errors else "", rows
 
 
+def frequencies(path):
+    """Angular frequencies of the straight beams of a run's settings.txt, rad/s, ascending; and the length of the first beam, m.
+
+    Element matrices of the shape functions, Eq. 19 of the paper, in exact and in 3-point Gauss quadrature for mass and stiffness, as the code's default."""
+    import numpy as np
+
+    number = r"([-+0-9.e]+)"
+    pattern = rf"beam \d+: (\d+) elements, L {number} m, .*EA {number} N, EI {number} N m\^2, rhoA {number} kg/m, ends (\w+)/(\w+)"
+    with open(path) as f:
+        beams = re.findall(pattern, f.read())
+    if not beams:
+        fail("the scene has no ANCF beam")
+    omega, dof = [], {"free": 0, "pin": 1, "clamp": 2}
+    for n, *rest in beams:
+        n, (length, EA, EI, rhoA) = int(n), map(float, rest[:4])
+        l = length / n
+        for axial in (True, False):
+            M, K = np.zeros((2 * n + 2, 2 * n + 2)), np.zeros((2 * n + 2, 2 * n + 2))
+            for points, target in ((4, M), (3, K)):
+                x, w = np.polynomial.legendre.leggauss(points)
+                for s, weight in zip((x + 1) / 2, w / 2 * l):
+                    S = np.array([1 - 3 * s**2 + 2 * s**3, l * (s - 2 * s**2 + s**3), 3 * s**2 - 2 * s**3, l * (s**3 - s**2)])
+                    Sx = np.array([-6 * s + 6 * s**2, l * (1 - 4 * s + 3 * s**2), 6 * s - 6 * s**2, l * (3 * s**2 - 2 * s)]) / l
+                    Sxx = np.array([-6 + 12 * s, l * (-4 + 6 * s), 6 - 12 * s, l * (6 * s - 2)]) / l**2
+                    v, c = (S, rhoA) if target is M else (Sx, EA) if axial else (Sxx, EI)
+                    for e in range(n):
+                        target[2 * e:2 * e + 4, 2 * e:2 * e + 4] += weight * c * np.outer(v, v)
+            fixed = list(range(dof[rest[4]])) + [2 * n + k for k in range(dof[rest[5]])]
+            keep = [k for k in range(2 * n + 2) if k not in fixed]
+            L = np.linalg.inv(np.linalg.cholesky(M[np.ix_(keep, keep)]))
+            omega += list(np.sqrt(np.maximum(np.linalg.eigvalsh(L @ K[np.ix_(keep, keep)] @ L.T), 0)))
+    return sorted(omega), float(beams[0][1])
+
+
+def predict(kind, omega, h, steps):
+    if kind not in EXPLICIT_ORDER:
+        return "stable"
+    size = max(abs(sum((1j * w * h) ** k / math.factorial(k) for k in range(EXPLICIT_ORDER[kind] + 1))) for w in omega)
+    growth = steps * math.log10(size)
+    return "stable" if growth <= 1 else "unstable" if growth >= 6 else "growing"
+
+
 def tips(rows):
-    name = next(k[: -len("_tip_x[m]")] for k in rows[0] if k.endswith("_tip_x[m]"))
+    name = next((k[: -len("_tip_x[m]")] for k in rows[0] if k.endswith("_tip_x[m]")), None)
+    if name is None:
+        fail("the scene has no beam")
     return [(r["time[s]"], [r[f"{name}_tip_{k}[m]"] for k in "xyz"]) for r in rows]
 
 
@@ -66,14 +122,23 @@ def distances(run, reference):
     return d
 
 
-def verdict(a, code, error, rows, reference):
-    if code and not rows:
-        return "refused", math.nan
-    if any(not math.isfinite(v) for r in rows for v in r.values()):
-        return "unstable", math.nan
-    d = distances(tips(rows), reference) if rows else [math.inf]
-    rms = math.sqrt(sum(v * v for v in d) / len(d))
-    return ("unstable" if code or d[-1] > a.blowup else "stable"), rms
+def gained(rows):
+    """Energy gained over a run without fluid and damping, in parts of the largest kinetic energy; NaN otherwise."""
+    if not rows or any(k.startswith("fluid") for k in rows[0]) or any(r["beams_dissipation[W]"] for r in rows):
+        return math.nan
+    total = [sum(r[f"beams_{k}[J]"] for k in ("kinetic", "elastic", "potential")) for r in (rows[0], rows[-1])]
+    largest = max(r["beams_kinetic[J]"] for r in rows)
+    return (total[1] - total[0]) / largest if largest > 0 else math.nan
+
+
+def verdict(a, code, rows, reference, length, energy):
+    """(verdict, rms error in m)"""
+    if code and len(rows) <= 1:
+        return "refused" if code == 1 else "blown up", math.nan
+    if code or any(not math.isfinite(v) for r in rows for v in r.values()):
+        return "blown up", math.nan
+    d = distances(tips(rows), reference)
+    return "unstable" if d[-1] > a.blowup * length or energy > 0.1 else "stable", math.sqrt(sum(v * v for v in d) / len(d))
 
 
 def sweep(a):
@@ -83,21 +148,26 @@ def sweep(a):
         for beam in a.beams:
             base += [f"-beam_{beam}_young", f"{young:g}"]
         reference_options = base + f"-ancf_ts_type alpha2 -ancf_ts_alpha_radius 1 -ancf_substeps {a.reference}".split()
-        wall, code, error, rows = simulate(a, os.path.join(a.out, "reference"), reference_options)
+        out = os.path.join(a.out, "reference")
+        wall, code, error, rows = simulate(a, out, reference_options)
         if code:
-            sys.exit(f"the reference run with E = {young:g} Pa failed: {error}")
+            fail(f"the reference run with E = {young:g} Pa failed: {error.removeprefix('frond: error: ')}")
         reference = tips(rows)
-        print(f"E {young:g} Pa: reference in {wall:.1f} s")
-        for name in a.types:
+        omega, length = frequencies(os.path.join(out, "settings.txt"))
+        step, end = rows[-1]["time[s]"] / rows[-1]["step[1]"], rows[-1]["time[s]"]
+        print(f"E {young:g} Pa: reference in {wall:.1f} s; omega_max {omega[-1]:.5g} rad/s, mean step {step:.3g} s", flush=True)
+        for kind in a.types:
             for ratio in a.ratios:
-                wall, code, error, rows = simulate(a, os.path.join(a.out, "run"), base + TYPES[name].split() + ["-ancf_substeps", str(ratio)])
-                state, rms = verdict(a, code, error, rows, reference)
+                wall, code, error, rows = simulate(a, os.path.join(a.out, "run"), base + TYPES[kind].split() + ["-ancf_substeps", str(ratio)])
+                energy = gained(rows)
+                state, rms = verdict(a, code, rows, reference, length, energy)
                 last = rows[-1] if rows else {}
-                row = {"young": young, "type": name, "ratio": ratio, "verdict": state, "error": rms, "steps": last.get("beams_steps[1]", 0),
-                       "newton": last.get("beams_newton[1]", 0), "linear": last.get("beams_linear[1]", 0), "wall": wall}
+                row = {"young": young, "type": kind, "ratio": ratio, "verdict": state, "predicted": predict(kind, omega, step / ratio, end / step * ratio),
+                       "z": omega[-1] * step / ratio, "error": rms, "energy": energy, "steps": int(last.get("beams_steps[1]", 0)),
+                       "newton": int(last.get("beams_newton[1]", 0)), "linear": int(last.get("beams_linear[1]", 0)), "wall": wall}
                 table.append(row)
-                print(f"  {name:9} ratio {ratio:3} {state:9} error {rms:.2e} m, {row['steps']:.0f} steps, {row['newton']:.0f} Newton, {row['linear']:.0f} linear, {wall:.1f} s"
-                      + (f" ({error})" if code else ""), flush=True)
+                print(f"  {kind:9} ratio {ratio:3} {state:9} (predicted {row['predicted']}, z {row['z']:.3g}) error {rms:.2e} m, {row['steps']} steps, {row['newton']} Newton, "
+                      f"{row['linear']} linear, {wall:.2f} s" + (f" ({error})" if code else ""), flush=True)
     return table
 
 
@@ -108,12 +178,11 @@ def write(a, table):
         w.writerows(table)
     import h5py
 
-    units = {"young": "Pa", "error": "m", "wall": "s"}
     with h5py.File(os.path.join(a.out, "study.h5"), "w") as f:
         for k in table[0]:
             text = isinstance(table[0][k], str)
             d = f.create_dataset(k, data=[r[k] for r in table], dtype=h5py.string_dtype() if text else None)
-            d.attrs["unit"] = units.get(k, "1")
+            d.attrs["unit"] = UNITS.get(k, "1")
 
 
 def plot(a, table):
@@ -124,12 +193,12 @@ def plot(a, table):
 
     figure, axes = plt.subplots(2, len(a.young), figsize=(5 * len(a.young), 8), squeeze=False, sharex=True)
     for column, young in enumerate(a.young):
-        for name in a.types:
-            rows = [r for r in table if r["young"] == young and r["type"] == name and r["verdict"] == "stable"]
-            axes[0][column].loglog([r["ratio"] for r in rows], [r["error"] for r in rows], "o-", label=name)
-            axes[1][column].loglog([r["ratio"] for r in rows], [r["wall"] for r in rows], "o-", label=name)
-        axes[0][column].set_title(f"E = {young:g} Pa (unstable runs left out)")
-        axes[1][column].set_xlabel("beam steps per fluid step")
+        for kind in a.types:
+            rows = [r for r in table if r["young"] == young and r["type"] == kind and r["verdict"] == "stable"]
+            axes[0][column].loglog([r["ratio"] for r in rows], [r["error"] for r in rows], "o-", label=kind)
+            axes[1][column].loglog([r["ratio"] for r in rows], [r["wall"] for r in rows], "o-", label=kind)
+        axes[0][column].set_title(f"E = {young:g} Pa (only stable runs)")
+        axes[1][column].set_xlabel("beam steps per step of the scene")
     axes[0][0].set_ylabel("tip error, rms, m")
     axes[1][0].set_ylabel("wall time, s")
     axes[0][0].legend()
@@ -137,24 +206,49 @@ def plot(a, table):
     figure.savefig(os.path.join(a.out, "study.png"), dpi=110)
 
 
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        fail(message + " (frond study substeps -h)")
+
+
+def positive(kind):
+    def convert(text):
+        value = kind(text)
+        if not value > 0 or not math.isfinite(value):
+            raise ValueError
+        return value
+    convert.__name__ = "number > 0" if kind is float else "whole number > 0"
+    return convert
+
+
 def main():
     argv, extra = sys.argv[1:], []
     if "--" in argv:
         argv, extra = argv[: argv.index("--")], argv[argv.index("--") + 1 :]
-    p = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    p.add_argument("scene")
-    p.add_argument("--frond", default=os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "bin", "frond"))
-    p.add_argument("--out", default="out_study")
-    p.add_argument("--types", nargs="+", default=["rk2", "alpha2", "midpoint", "bdf2", "arkimex", "irk", "dirk"], choices=list(TYPES))
-    p.add_argument("--ratios", nargs="+", type=int, default=[1, 2, 5, 10, 20, 50])
-    p.add_argument("--young", nargs="+", type=float, default=[20e6])
-    p.add_argument("--beams", nargs="*", default=["rod"], help="names of the beams whose modulus is swept")
-    p.add_argument("--reference", type=int, default=200, help="beam steps per fluid step of the reference")
-    p.add_argument("--blowup", type=float, default=0.1, help="m")
-    p.add_argument("--timeout", type=float, default=600, help="of one run, s")
+    p = Parser(prog="frond study substeps", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("scene", help="YAML file; a scene without fluid is a beam alone")
+    p.add_argument("--frond", default=os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "bin", "frond"), help="the command")
+    p.add_argument("--out", default="out_study", help="folder of the results (default: out_study)")
+    p.add_argument("--types", nargs="+", default=["rk2", "rk4", "alpha2", "midpoint", "bdf2", "arkimex", "irk", "dirk"], choices=list(TYPES))
+    p.add_argument("--ratios", nargs="+", type=positive(int), default=[1, 2, 5, 10, 20, 50], help="beam steps in a step of the scene")
+    p.add_argument("--young", nargs="+", type=positive(float), default=[20e6], help="Pa")
+    p.add_argument("--beams", nargs="*", default=["rod"], help="names of the beams whose modulus is swept (default: rod)")
+    p.add_argument("--reference", type=positive(int), default=200, help="beam steps in a step of the scene for the reference (default: 200)")
+    p.add_argument("--blowup", type=positive(float), default=0.1, help="beam lengths (default: 0.1)")
+    p.add_argument("--timeout", type=positive(float), default=600, help="of one run, s (default: 600)")
     a = p.parse_args(argv)
     a.options = extra
-    os.makedirs(a.out, exist_ok=True)
+    if not os.path.isfile(a.scene):
+        fail(f"scene {a.scene}: no such file")
+    for module in ("numpy", "h5py", "matplotlib"):
+        try:
+            __import__(module)
+        except ImportError:
+            fail(f"needs the Python module {module}; FROND_PYTHON names another interpreter than {sys.executable}")
+    try:
+        os.makedirs(a.out, exist_ok=True)
+    except OSError as e:
+        fail(f"--out {a.out}: {e.strerror}")
     table = sweep(a)
     write(a, table)
     plot(a, table)

@@ -17,6 +17,7 @@ frond_app_test(app_probes unit)
 frond_app_test(app_sections unit)
 frond_app_test(app_checkpoint unit)
 frond_app_test(app_motion unit)
+frond_app_test(app_study validation)
 frond_app_test(app_links unit)
 frond_app_test(app_faults unit)
 add_test(NAME app_kills COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1

@@ -26,6 +26,8 @@ typedef struct {
   char context[128]; /* what the command was doing, put before the message; empty for nothing */
 } AppErrors;
 PetscErrorCode AppErrorInstall(AppErrors *errors);
+/* appstudy.c: `frond study ...`; the exit code, when it cannot start. */
+int AppStudy(int argc, char **argv);
 int AppErrorReport(const AppErrors *errors, PetscErrorCode ierr, PetscBool quiet);
 
 /* appoptions.c: tables of options, read through PETSc so that -help lists them. */

@@ -3,6 +3,7 @@
 
   frond run FILE [options]     run a scene
   frond check FILE [options]   validate it, count, estimate
+  frond study substeps FILE    sweep integrators and step ratios of the beams
   frond -help | -version
 */
 #include "app.h"
@@ -16,6 +17,7 @@ static const char usage[] =
     "Frond: fully resolved fluid-structure interaction (SPH fluid, ANCF beams, rigid bodies)\n"
     "  frond run FILE [options]     run the scene of a YAML file\n"
     "  frond check FILE [options]   validate it; print marker counts, memory, time step and cost\n"
+    "  frond study substeps FILE    sweep integrators, step ratios and moduli of the beams (frond study substeps -h)\n"
     "  frond -help                  every option (frond run FILE -help: with the scene's values)\n"
     "  frond -version\n"
     "An option -a_b_c of the command line is a_b_c: in the file, or c: nested under a: and b:, and wins over it.\n"
@@ -55,7 +57,7 @@ static PetscErrorCode parse_command(int argc, char **argv, Command *c)
   c->check = (PetscBool)!strcmp(word, "check");
   if (!c->run && !c->check) {
     PetscCheck(c->help || c->version, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
-               "'%s' is no command; use frond run FILE or frond check FILE (frond -help)", word);
+               "'%s' is no command; use frond run FILE, frond check FILE or frond study (frond -help)", word);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (argc > 2 && argv[2][0] != '-') c->file = argv[2];
@@ -154,6 +156,7 @@ int main(int argc, char **argv)
   char **petscargv = malloc(((size_t)argc + 1) * sizeof(char *)), **list = petscargv;
   PetscErrorCode ierr;
 
+  if (argc > 1 && !strcmp(argv[1], "study")) return AppStudy(argc, argv);
   if (!petscargv || MPI_Init(&argc, &argv)) return APP_EXIT_USER;
   petscargc = petsc_arguments(argc, argv, petscargv);
   if (PetscInitialize(&petscargc, &petscargv, NULL, NULL)) return APP_EXIT_USER;
