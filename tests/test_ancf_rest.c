@@ -1,4 +1,4 @@
-/* test_ancf_rest.c - curved and prestressed beams: tangent, invariance, rest, arcs under loads, strings, refusals. */
+/* test_ancf_rest.c - curved and prestressed beams: tangent, invariance, rest, arcs under loads, strings; sections; refusals. */
 #include "ancf_common.h"
 #include "ancfimpl.h"
 
@@ -307,6 +307,81 @@ static PetscErrorCode CreateBad(const AncfBeamSpec *s)
   PetscFunctionReturn(ierr);
 }
 
+/* Stiffness and mass of the sections by their formulas, and the mass that moves by the momentum of a free beam at 2 m/s. */
+static PetscErrorCode TestSections(void)
+{
+  static const struct {
+    PetscReal diameter, inner, width, thickness, density, A, I2;
+  } runs[] = {{0.02, 0, 0, 0, 1000, PETSC_PI * 1e-4, PETSC_PI / 4 * 1e-8},
+              {0.02, 0.01, 0, 0, 1000, PETSC_PI * 0.75e-4, PETSC_PI / 4 * (1e-8 - 6.25e-10)},
+              {0.02, 0.01, 0, 0, 3000, PETSC_PI * 0.75e-4, PETSC_PI / 4 * (1e-8 - 6.25e-10)},
+              {0, 0, 0.03, 0.03, 1000, 9e-4, 8.1e-7 / 12},
+              {0, 0, 0.05, 0.01, 1000, 5e-4, 0.05e-6 / 12}};
+
+  PetscFunctionBegin;
+  for (size_t k = 0; k < sizeof(runs) / sizeof(runs[0]); k++) {
+    AncfBeamSpec s, got;
+    PetscReal p[3];
+    Ancf a;
+
+    PetscCall(AncfBeamSpecInit(&s));
+    s.end[0] = 2;
+    s.diameter = runs[k].diameter;
+    s.inner = runs[k].inner;
+    s.width = runs[k].width;
+    s.thickness = runs[k].thickness;
+    s.density = runs[k].density;
+    s.young = 1e9;
+    s.velocity[1] = 2;
+    s.normal[2] = runs[k].width != runs[k].thickness;
+    PetscCall(BeamCreate(&s, 0, "", &a));
+    PetscCall(AncfGetBeam(a, 0, &got, NULL, NULL));
+    TEST_REL(got.EA, 1e9 * runs[k].A, 1e-14, "EA");
+    TEST_REL(got.EI, 1e9 * runs[k].I2, 1e-14, "EI");
+    s.density *= 5; /* the caller's copy: the beam keeps its mass, and takes no other after set-up */
+    TEST_ERROR(AncfAddBeam(a, &s, NULL), PETSC_ERR_ARG_WRONGSTATE, "after AncfSetUp");
+    PetscCall(AncfAdvance(a, 1e-3));
+    PetscCall(AncfGetMomentum(a, p, NULL));
+    TEST_REL(p[1], 4 * runs[k].density * runs[k].A, 1e-12, "momentum");
+    PetscCall(AncfDestroy(&a));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A flat strip declared planar: bends by F L^3/(3 EI) in its plane, and is refused outside. */
+static PetscErrorCode TestStrip(void)
+{
+  const PetscReal in[3] = {0, 1e-6, 0}, out[3] = {0, 0, 1};
+  const PetscReal *e;
+  AncfBeamSpec s;
+  Ancf a;
+
+  PetscFunctionBegin;
+  PetscCall(AncfBeamSpecInit(&s));
+  s.end[0] = 1;
+  s.width = 0.05;
+  s.thickness = 0.01;
+  s.young = 1e9;
+  s.density = 1000;
+  s.end0 = ANCF_END_CLAMP;
+  TEST_ERROR(CreateBad(&s), PETSC_ERR_SUP, "two bending stiffnesses");
+  s.normal[2] = 1;
+  PetscCall(BeamCreate(&s, 0, "", &a));
+  PetscCall(AncfAddPointLoad(a, 0, 1, in));
+  PetscCall(AncfSolveStatic(a, 1));
+  PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
+  TEST_REL(e[25], in[1] / (3 * 1e9 * 0.05e-6 / 12), 1e-6, "tip of the strip");
+  PetscCall(AncfAddPointLoad(a, 0, 1, out));
+  TEST_ERROR(AncfAdvance(a, 1), PETSC_ERR_SUP, "leaves its plane");
+  PetscCall(AncfDestroy(&a));
+  s.inner = 0.01;
+  TEST_ERROR(CreateBad(&s), PETSC_ERR_ARG_INCOMP, "a tube or a rectangle");
+  s.inner = 0;
+  s.thickness = -0.01;
+  TEST_ERROR(CreateBad(&s), PETSC_ERR_ARG_OUTOFRANGE, "thickness = -0.01");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode TestBad(void)
 {
   const PetscReal F[3] = {0, 0, 0.1};
@@ -350,6 +425,8 @@ int main(int argc, char **argv)
   PetscCall(TestStraighten());
   PetscCall(TestString());
   PetscCall(TestSame());
+  PetscCall(TestSections());
+  PetscCall(TestStrip());
   PetscCall(TestBad());
   PetscCall(PetscFinalize());
   return test_report();

@@ -80,63 +80,12 @@ PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner)
-{
-  const PetscReal d2 = spec->diameter * spec->diameter, i2 = inner * inner, A = PETSC_PI / 4 * (d2 - i2);
-
-  PetscFunctionBegin;
-  PetscCheck(inner >= 0 && inner < spec->diameter, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "AncfBeamSpecSetAnnulus: inner diameter %g m must be in [0, %g), the outer diameter", (double)inner,
-             (double)spec->diameter);
-  spec->EA = spec->young * A;
-  spec->EI = spec->young * A * (d2 + i2) / 16; /* pi/64 (d^4 - inner^4) */
-  spec->rhoA = spec->density * A;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AncfCheckPositive(Ancf ancf, const char field[], PetscReal x, const char unit[])
-{
-  PetscFunctionBegin;
-  PetscCheck(PetscIsNormalReal(x) && x > 0, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "Beam %" PetscInt_FMT ": %s = %g %s must be positive and finite", ancf->nbeams, field, (double)x, unit);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AncfCheckNotNegative(Ancf ancf, const char field[], PetscReal x, const char unit[])
-{
-  PetscFunctionBegin;
-  PetscCheck(x >= 0 && !PetscIsInfOrNanReal(x), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "Beam %" PetscInt_FMT ": %s = %g %s must be finite and not negative", ancf->nbeams, field, (double)x, unit);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AncfCheckVector(Ancf ancf, const char field[], const PetscReal x[3])
 {
   PetscFunctionBegin;
   PetscCheck(!PetscIsInfOrNanReal(x[0] + x[1] + x[2]), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "Beam %" PetscInt_FMT ": %s = (%g, %g, %g) must be finite", ancf->nbeams, field, (double)x[0], (double)x[1],
              (double)x[2]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The section follows from d, E, rho_s unless given directly. */
-static PetscErrorCode AncfBeamSection(Ancf ancf, const AncfBeamSpec *spec, AncfBeam *beam)
-{
-  PetscReal d = spec->diameter;
-
-  PetscFunctionBegin;
-  PetscCall(AncfCheckPositive(ancf, "diameter", d, "m"));
-  beam->area = PETSC_PI * d * d / 4;
-  if (spec->EA == PETSC_DECIDE || spec->EI == PETSC_DECIDE) PetscCall(AncfCheckPositive(ancf, "young", spec->young, "Pa"));
-  if (spec->rhoA == PETSC_DECIDE) PetscCall(AncfCheckPositive(ancf, "density", spec->density, "kg/m^3"));
-  beam->EA = spec->EA == PETSC_DECIDE ? spec->young * beam->area : spec->EA;
-  beam->EI = spec->EI == PETSC_DECIDE ? spec->young * beam->area * d * d / 16 : spec->EI;
-  beam->rhoA = spec->rhoA == PETSC_DECIDE ? spec->density * beam->area : spec->rhoA;
-  PetscCall(AncfCheckPositive(ancf, "EA", beam->EA, "N"));
-  PetscCall(AncfCheckPositive(ancf, "EI", beam->EI, "N m^2"));
-  PetscCall(AncfCheckPositive(ancf, "rhoA", beam->rhoA, "kg/m"));
-  PetscCall(AncfCheckNotNegative(ancf, "axialdamping", spec->axialdamping, "s"));
-  PetscCall(AncfCheckNotNegative(ancf, "bendingdamping", spec->bendingdamping, "s"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,7 +117,7 @@ PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number
              (double)spec->start[0], (double)spec->start[1], (double)spec->start[2]);
   PetscCheck(!PetscIsInfOrNanReal(L), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE, "Beam %" PetscInt_FMT ": length must be finite",
              ancf->nbeams);
-  PetscCall(AncfBeamSection(ancf, spec, &beam));
+  PetscCall(AncfBeamSection(ancf, &beam));
   PetscCall(AncfCheckRest(ancf, spec));
   for (int k = 0; k < 2; k++) {
     AncfEnd end = k ? spec->end1 : spec->end0;
@@ -474,6 +423,11 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
     if (m->spec.axialdamping > 0 || m->spec.bendingdamping > 0)
       PetscCall(PetscViewerASCIIPrintf(viewer, "        retardation times: axial %g s, bending %g s\n",
                                        (double)m->spec.axialdamping, (double)m->spec.bendingdamping));
+    if (m->spec.inner > 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "        tube, inner diameter %g m\n", (double)m->spec.inner));
+    if (m->spec.width > 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "        rectangle, width %g m, thickness %g m\n", (double)m->spec.width,
+                                       (double)m->spec.thickness));
     if (m->spec.pretension != 0 || m->spec.curvature != 0)
       PetscCall(PetscViewerASCIIPrintf(viewer, "        pretension %g N, curvature %g 1/m about (%g, %g, %g)\n",
                                        (double)m->spec.pretension, (double)m->spec.curvature, (double)m->spec.normal[0],
@@ -511,7 +465,8 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree4(a->motion, a->resta, a->restm, a->restv));
   PetscCall(PetscFree2(a->stage, a->impulse));
   PetscCall(PetscFree2(a->spin, a->spinsum));
-  PetscCall(PetscFree3(a->natural, a->normal, a->shape));
+  PetscCall(PetscFree2(a->natural, a->shape));
+  PetscCall(PetscFree(a->normal));
   PetscCall(PetscFree(a->supports));
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));

@@ -22,7 +22,8 @@ typedef enum { ANCF_STRAIN_PAPER, ANCF_STRAIN_ENGINEERING } AncfStrain;
 /* What a beam end may do. Free: all 6 coordinates; pin: position fixed; clamp: position and gradient fixed. */
 typedef enum { ANCF_END_FREE, ANCF_END_PIN, ANCF_END_CLAMP } AncfEnd;
 
-/* Straight or arched beam with a circular section; every field must be set. AncfBeamSpecInit() gives the defaults. */
+/* Straight or arched beam of a circular, annular or rectangular section; every field must be set. AncfBeamSpecInit() gives the
+ * defaults. */
 typedef struct {
   PetscReal start[3];                     /* first node, m */
   PetscReal end[3];                       /* last node, m; |end-start| is the length L, of an arc its chord */
@@ -32,8 +33,12 @@ typedef struct {
   PetscReal young;                        /* E, Pa */
   PetscReal axialdamping, bendingdamping; /* retardation times tau, s, of N = EA (eps + tau deps/dt) and M alike */
   PetscReal EA, EI, rhoA;                 /* overrides, N, N m^2, kg/m; PETSC_DECIDE (-1): derived from d, E, rho_s */
+  PetscReal inner;                        /* inner diameter of a tube, m; default 0 */
+  PetscReal width, thickness;             /* rectangle: along the normal and across, m; default 0: none; diameter may be 0 then */
   PetscReal pretension;                   /* axial force in the initial shape, N; default 0 */
-  PetscReal curvature, normal[3]; /* the axis is an arc from start to end, free of bending: 1/m, turning about the normal */
+  PetscReal curvature, normal[3]; /* the axis is an arc from start to end, free of bending: 1/m, turning about the normal; a
+                                             normal, not zero, declares that the beam moves in the plane across it, and refuses
+                                     other motion. A rectangle that is no square needs it: the element carries one EI */
   PetscReal velocity[3];          /* initial velocity, m/s */
   AncfEnd end0, end1;             /* boundary conditions at start and end */
 } AncfBeamSpec;

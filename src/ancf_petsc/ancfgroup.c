@@ -41,9 +41,9 @@ static PetscErrorCode AncfGroupCreate(Ancf ancf, PetscInt first, PetscInt last, 
   g->rest += 6 * node;
   g->fixed += node;
   g->mass += 8 * node;
+  if (ancf->normal) g->normal += 3 * node;
   if (ancf->natural) {
     g->natural += (ancf->rule.axial.n + ancf->rule.bending.n) * node;
-    g->normal += 3 * node;
     g->shape += 6 * node;
   }
   if (ancf->viscous) {

@@ -80,8 +80,9 @@ struct _p_Ancf {
   AncfRule rule;
   PetscReal gravity[3], fluiddensity, damping, stiffnessdamping;
   PetscReal *natural; /* strain and curvature without stress at the Gauss points of the element after each node; NULL: zero */
-  PetscReal *normal, *shape; /* of the plane of curved beams, nodes x 3; initial coordinates, nodes x 6; with natural */
-  PetscBool viscous;         /* some beam has internal damping */
+  PetscReal *normal,
+      *shape;        /* of the plane of beams that have one, nodes x 3, or NULL; initial coordinates, nodes x 6; with natural */
+  PetscBool viscous; /* some beam has internal damping */
   PetscReal *spin, *spinsum; /* see ancfviscous.h: per beam 3 and, to work with, 9; NULL without internal damping */
   PetscReal *damped;         /* a + damping v, nodes x 6 */
   PetscBool setup;
@@ -265,6 +266,9 @@ extern void AncfViscousChain(Ancf ancf, const PetscInt chain[ANCF_LANES], PetscI
                              const PetscReal *spin, PetscReal gv, AncfLanes K[ANCF_TANGENT]);
 extern PetscErrorCode AncfAssembleViscous(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, PetscReal shift,
                                           Mat P);
+
+/* ancfsection.c */
+extern PetscErrorCode AncfBeamSection(Ancf ancf, AncfBeam *beam);
 
 /* ancfrest.c: curved and prestressed beams; the first two only if ancf->natural. node: of each lane's element, -1: none. */
 extern void AncfRestForce(const Ancf ancf, const PetscInt node[ANCF_LANES], const AncfSection *s, const AncfLanes e[12],

@@ -218,12 +218,12 @@ PetscErrorCode AncfCheckRest(Ancf ancf, const AncfBeamSpec *s)
              "Beam %" PetscInt_FMT ": pretension = %g N must be finite", ancf->nbeams, (double)s->pretension);
   PetscCheck(!PetscIsInfOrNanReal(s->curvature), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "Beam %" PetscInt_FMT ": curvature = %g 1/m must be finite", ancf->nbeams, (double)s->curvature);
-  if (s->curvature == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (int c = 0; c < 3; c++) {
     chord += PetscSqr(s->end[c] - s->start[c]);
     size += PetscSqr(s->normal[c]);
     dot += (s->end[c] - s->start[c]) * s->normal[c];
   }
+  if (s->curvature == 0 && size == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(PetscAbsReal(s->curvature) * PetscSqrtReal(chord) <= 2, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "Beam %" PetscInt_FMT
              ": curvature = %g 1/m must be within +-%g, 2 over the distance of start and end: an arc is at most "
@@ -232,8 +232,8 @@ PetscErrorCode AncfCheckRest(Ancf ancf, const AncfBeamSpec *s)
   PetscCheck(size > 0 && !PetscIsInfOrNanReal(size) && PetscAbsReal(dot) <= 1e-10 * PetscSqrtReal(chord * size), ancf->comm,
              PETSC_ERR_ARG_INCOMP,
              "Beam %" PetscInt_FMT
-             ": normal = (%g, %g, %g) must be a vector across the line from start to end: the plane of a curved beam "
-             "contains both",
+             ": normal = (%g, %g, %g) must be a vector across the line from start to end, which lies in the plane "
+             "of motion",
              ancf->nbeams, (double)s->normal[0], (double)s->normal[1], (double)s->normal[2]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -249,43 +249,58 @@ void AncfRestSection(const Ancf ancf, const AncfBeam *m, PetscInt node, PetscRea
   *eps -= m->spec.pretension / m->EA;
 }
 
-/* The shape in e is the natural one, so that the beams stay at rest in it to round-off. */
-PetscErrorCode AncfSetUpRest(Ancf ancf)
+static PetscErrorCode SetUpNormals(Ancf ancf)
 {
-  const PetscInt na = ancf->rule.axial.n, nb = ancf->rule.bending.n;
-  PetscBool any = PETSC_FALSE;
-
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < ancf->nbeams; b++)
-    if (ancf->beams[b].spec.pretension != 0 || ancf->beams[b].spec.curvature != 0) any = PETSC_TRUE;
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(
-      PetscCalloc3((na + nb) * ancf->nnodes, &ancf->natural, 3 * ancf->nnodes, &ancf->normal, 6 * ancf->nnodes, &ancf->shape));
-  PetscCall(PetscArraycpy(ancf->shape, ancf->e, 6 * ancf->nnodes));
+  PetscCall(PetscCalloc1(3 * ancf->nnodes, &ancf->normal));
   for (PetscInt b = 0; b < ancf->nbeams; b++) {
     const AncfBeam *m = &ancf->beams[b];
     const PetscReal *n = m->spec.normal, size = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 
-    for (PetscInt j = m->node; j <= m->node + m->spec.elements; j++) {
-      PetscReal none, kappa[3], *x = ancf->natural + (na + nb) * j, *N = ancf->normal + 3 * j;
+    for (PetscInt j = m->node; j <= m->node + m->spec.elements && size > 0; j++)
+      for (int c = 0; c < 3; c++) ancf->normal[3 * j + c] = n[c] / size;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-      for (int c = 0; c < 3 && m->spec.curvature != 0; c++) N[c] = n[c] / size;
-      if (j == m->node + m->spec.elements) break;
+/* The shape in e is the natural one, so that the beams stay at rest in it to round-off. */
+PetscErrorCode AncfSetUpRest(Ancf ancf)
+{
+  const PetscInt na = ancf->rule.axial.n, nb = ancf->rule.bending.n;
+  PetscBool natural = PETSC_FALSE, planar = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeamSpec *s = &ancf->beams[b].spec;
+
+    if (s->pretension != 0 || s->curvature != 0) natural = PETSC_TRUE;
+    if (s->normal[0] != 0 || s->normal[1] != 0 || s->normal[2] != 0) planar = PETSC_TRUE;
+  }
+  if (natural || planar) PetscCall(SetUpNormals(ancf));
+  if (!natural) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2((na + nb) * ancf->nnodes, &ancf->natural, 6 * ancf->nnodes, &ancf->shape));
+  PetscCall(PetscArraycpy(ancf->shape, ancf->e, 6 * ancf->nnodes));
+  for (PetscInt b = 0; b < ancf->nbeams; b++) {
+    const AncfBeam *m = &ancf->beams[b];
+
+    for (PetscInt j = m->node; j < m->node + m->spec.elements; j++) {
+      PetscReal none, kappa[3], *x = ancf->natural + (na + nb) * j, *n = ancf->normal + 3 * j;
+
       for (PetscInt k = 0; k < na; k++) AncfRestSection(ancf, m, j, ancf->rule.axial.xi[k], &x[k], kappa);
       for (PetscInt k = 0; k < nb; k++) {
         AncfRestSection(ancf, m, j, ancf->rule.bending.xi[k], &none, kappa);
-        x[na + k] = kappa[0] * N[0] + kappa[1] * N[1] + kappa[2] * N[2];
+        x[na + k] = kappa[0] * n[0] + kappa[1] * n[1] + kappa[2] * n[2];
       }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A curved beam that leaves its plane has no frame to say where its curvature goes. */
+/* A beam that leaves its plane has no frame to say where its curvature, or the smaller of two stiffnesses, goes. */
 PetscErrorCode AncfCheckPlane(Ancf ancf, const PetscReal *e, PetscReal t)
 {
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < ancf->nnodes && ancf->natural; j++) {
+  for (PetscInt j = 0; j < ancf->nnodes && ancf->normal; j++) {
     const PetscReal *n = ancf->normal + 3 * j, *r = e + 6 * j + 3;
     const PetscReal slope = PetscAbsReal(n[0] * r[0] + n[1] * r[1] + n[2] * r[2]);
     PetscInt b;
@@ -293,10 +308,9 @@ PetscErrorCode AncfCheckPlane(Ancf ancf, const PetscReal *e, PetscReal t)
     if (PetscLikely(slope <= OUT_OF_PLANE)) continue;
     b = AncfFindBeam(ancf, j);
     SETERRQ(ancf->comm, PETSC_ERR_SUP,
-            "Beam %" PetscInt_FMT " with curvature = %g 1/m leaves its plane (slope %g at node %" PetscInt_FMT
-            ", allowed %g) at t = %g s: without twist, a curved beam moves in the plane of its normal only",
-            ancf->firstbeam + b, (double)ancf->beams[b].spec.curvature, (double)slope, j - ancf->beams[b].node, OUT_OF_PLANE,
-            (double)t);
+            "Beam %" PetscInt_FMT " leaves its plane, that across its normal (slope %g at node %" PetscInt_FMT
+            ", allowed %g) at t = %g s: without twist, a curved or flat beam moves in that plane only",
+            ancf->firstbeam + b, (double)slope, j - ancf->beams[b].node, OUT_OF_PLANE, (double)t);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

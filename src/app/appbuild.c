@@ -48,6 +48,12 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
   for (PetscInt b = 0; b < s->nbeams; b++) {
     AppDoing(app, "beam '%s'", s->beams[b].name);
     if (app->dim == 2) PetscCall(plate_section(&s->beams[b].spec));
+    PetscCheck(s->beams[b].spec.width == 0 || (!s->fluid && app->dim == 3), PETSC_COMM_SELF, PETSC_ERR_SUP,
+               "beam_%s_width = %g m: beams in a fluid are round, and plates in 2D; give diameter, EA, EI and rhoA",
+               s->beams[b].name, (double)s->beams[b].spec.width);
+    PetscCheck(s->beams[b].spec.inner == 0 || app->dim == 3, PETSC_COMM_SELF, PETSC_ERR_SUP,
+               "beam_%s_inner = %g m: in 2D a beam is a plate; give EA, EI and rhoA", s->beams[b].name,
+               (double)s->beams[b].spec.inner);
     PetscCheck(!s->fluid || s->beams[b].spec.curvature == 0, PETSC_COMM_SELF, PETSC_ERR_SUP,
                "beam_%s_curvature = %g 1/m: beams in a fluid must be straight at first", s->beams[b].name,
                (double)s->beams[b].spec.curvature);

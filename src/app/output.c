@@ -253,12 +253,13 @@ static PetscErrorCode write_sections(App *app, PetscInt beam, PetscInt n, int64_
 static PetscErrorCode write_beam(AppOutput out, App *app, PetscInt beam, int64_t beams)
 {
   const AncfBeamSpec *spec = &app->scene.beams[beam].spec;
+  AncfBeamSpec got;
   PetscInt n = out->series.points[beam];
   PetscReal *v, *s, l, L, *r = out->vector, *stretch = out->scalar;
   int64_t g, h;
 
   PetscFunctionBegin;
-  PetscCall(AncfGetBeam(app->ancf, beam, NULL, NULL, &l));
+  PetscCall(AncfGetBeam(app->ancf, beam, &got, NULL, &l));
   L = l * (PetscReal)spec->elements;
   PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &s));
   for (PetscInt i = 0; i < n; i++) {
@@ -268,7 +269,7 @@ static PetscErrorCode write_beam(AppOutput out, App *app, PetscInt beam, int64_t
     stretch[i] = PetscSqrtReal(rx[0] * rx[0] + rx[1] * rx[1] + rx[2] * rx[2]);
   }
   PetscCall(AppH5Group(beams, app->scene.beams[beam].name, &g));
-  PetscCall(AppH5AttrReal(g, "diameter", spec->diameter));
+  PetscCall(AppH5AttrReal(g, "diameter", got.diameter));
   PetscCall(AppH5AttrReal(g, "length", L));
   PetscCall(AppH5AttrInt(g, "elements", spec->elements));
   PetscCall(write_nodes(app, beam, g));
