@@ -595,6 +595,52 @@ static PetscErrorCode TestTable(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One body with its own gravity, a load and a torque beside one without: parabola and uniform spin-up are exact; the work of the
+ * torque is the gain of energy. */
+static PetscErrorCode TestOwnLoads(void)
+{
+  const PetscReal g[3] = {0., 0., -9.}, own[3] = {1., 0., 2.}, F[3] = {0., 3., 0.}, T[3] = {0., 0., 4.}, rho = 300., n = 40.;
+  PetscReal X[3], w[3], K0, P0, K, P, bad[3] = {0., 0., 0.};
+  PetscErrorCode ierr;
+  RigidBodySpec s;
+  Rigid r;
+
+  PetscFunctionBegin;
+  PetscCall(Begin(&r, &s));
+  PetscCall(RigidSetGravity(r, g));
+  PetscCall(RigidSetFluidDensity(r, rho));
+  s.shape = RIGID_SPHERE;
+  s.size[0] = .2;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidSetBodyGravity(r, 1, own));
+  PetscCall(RigidSetBodyLoad(r, 1, F, T));
+  PetscCall(RigidSetUp(r));
+  PetscCall(RigidGetBody(r, 1, &s));
+  PetscCall(RigidGetEnergy(r, &K0, &P0));
+  for (int k = 1; k <= 40; k++) PetscCall(RigidAdvance(r, k / n));
+  PetscCall(RigidGetEnergy(r, &K, &P));
+  const PetscReal V = 4. / 3. * PETSC_PI * .008, t = 1.;
+  for (int b = 0; b < 2; b++) {
+    PetscCall(RigidGetState(r, b, X, NULL, NULL, w));
+    for (int k = 0; k < 3; k++) {
+      const PetscReal a = b ? own[k] + (F[k] - rho * V * g[k]) / s.mass : (1. - rho * V / s.mass) * g[k];
+      TEST_NEAR(X[k] - s.position[k], .5 * a * t * t, 1e-12, b ? "path under its own loads" : "path without");
+      TEST_NEAR(w[k], b ? T[k] / s.inertia[k] * t : 0., 1e-12, "spin");
+    }
+  }
+  TEST_NEAR(K + P - K0 - P0, T[2] * .5 * T[2] / s.inertia[2] * t * t, 1e-10 * K, "energy and the torque's work");
+  bad[1] = (PetscReal)NAN;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  ierr = RigidSetBodyLoad(r, 1, bad, NULL);
+  TEST(ierr, "a load that is not finite was taken");
+  ierr = RigidSetBodyGravity(r, 2, own);
+  TEST(ierr, "gravity of a body that is not there was taken");
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(RigidDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscCall(PetscInitialize(&argc, &argv, NULL, help));
@@ -611,6 +657,7 @@ int main(int argc, char **argv)
   PetscCall(TestLocks());
   PetscCall(TestOtherMotions());
   PetscCall(TestTable());
+  PetscCall(TestOwnLoads());
   PetscCall(PetscFinalize());
   return test_report();
 }

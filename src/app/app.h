@@ -57,8 +57,10 @@ typedef struct {
 typedef struct {
   char name[APP_NAME_LEN];
   RigidBodySpec spec;
-  char file[PETSC_MAX_PATH_LEN]; /* mesh: STL file */
-  PetscReal scale;               /* m per unit of the file */
+  char file[PETSC_MAX_PATH_LEN];            /* mesh: STL file */
+  PetscReal scale;                          /* m per unit of the file */
+  PetscReal gravity[3], load[3], torque[3]; /* own gravity, m/s^2; permanent load, N, N m */
+  PetscBool owngravity;
 } SceneBody;
 
 typedef struct {

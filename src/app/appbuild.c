@@ -86,6 +86,8 @@ static PetscErrorCode build_bodies(App *app, PetscReal rho)
       PetscCall(RigidGeometryCreateSTL(PETSC_COMM_SELF, s->bodies[b].file, s->bodies[b].scale, &mesh));
     spec->geometry = mesh;
     PetscCall(RigidAddBody(app->rigid, spec, NULL));
+    if (s->bodies[b].owngravity) PetscCall(RigidSetBodyGravity(app->rigid, b, s->bodies[b].gravity));
+    PetscCall(RigidSetBodyLoad(app->rigid, b, s->bodies[b].load, s->bodies[b].torque));
     PetscCall(RigidGeometryDestroy(&mesh)); /* the body keeps its own reference */
     PetscCall(RigidGetBody(app->rigid, b, spec));
     AppDoing(app, "%s", "");

@@ -207,7 +207,7 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
 {
   RigidBodySpec *spec = &body->spec;
   PetscInt shape = spec->shape, motion = spec->motion;
-  PetscBool mass = PETSC_FALSE, inertia = PETSC_FALSE;
+  PetscBool mass = PETSC_FALSE, inertia = PETSC_FALSE, owngravity = body->owngravity;
   const AppOpt opt[] = {
       {OPT_CHOICE, "shape", "Shape", &shape, shapes, NULL},
       {OPT_CHOICE, "motion", "Motion", &motion, motions, NULL},
@@ -222,6 +222,10 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
       {OPT_REAL, "mass", "Mass in place of density, kg (default: derived)", &spec->mass, NULL, &mass},
       {OPT_VEC, "inertia", "Principal moments in place of density, kg m^2 (default: derived)", spec->inertia, NULL, &inertia},
       {OPT_SUBSET, "lock", "Motions that a free body may not make: along x, y, z and about x, y, z", spec->lock, locks, NULL},
+      {OPT_VEC, "gravity", "Acceleration of gravity of this body, m/s^2 (default: the scene's)", body->gravity, NULL,
+       &owngravity},
+      {OPT_VEC, "load", "Constant force in the centre of mass, N", body->load, NULL, NULL},
+      {OPT_VEC, "torque", "Constant torque of fixed direction, N m", body->torque, NULL, NULL},
       {OPT_STRING, "file", "mesh: STL file of the closed surface (needed for a mesh)", body->file, NULL, NULL},
       {OPT_REAL, "scale", "mesh: metres per unit of the file", &body->scale, NULL, NULL},
   };
@@ -234,6 +238,7 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
     PetscCheck(spec->inertia[a] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "%sinertia = %g,%g,%g kg m^2: each moment must be positive", prefix, (double)spec->inertia[0],
                (double)spec->inertia[1], (double)spec->inertia[2]);
+  body->owngravity = owngravity;
   spec->shape = (RigidShape)shape;
   spec->motion = (RigidMotion)motion;
   PetscFunctionReturn(PETSC_SUCCESS);

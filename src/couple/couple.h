@@ -232,36 +232,38 @@ typedef struct _p_CoupleShort *CoupleShort;
 /* comm: communicator of the errors. ancf: the beams, set up; kept, not owned. rigid: the bodies, set up, or NULL. sr: the new
  * one. */
 FROND_EXTERN PetscErrorCode CoupleShortCreate(MPI_Comm comm, Ancf ancf, Rigid rigid, CoupleShort *sr);
-/* p: parameters, copied; neither viscosity nor modulus: no forces. Before CoupleShortSetUp(). */
+/* sr: the forces. p: parameters, copied; neither viscosity nor modulus: no forces. Before CoupleShortSetUp(). */
 FROND_EXTERN PetscErrorCode CoupleShortSetParameters(CoupleShort sr, const ShortRange *p);
-/* n: samples of the axis per diameter, 2 to 64, default 8. Before CoupleShortSetUp(). */
+/* sr: the forces. n: samples of the axis per diameter, 2 to 64, default 8. Before CoupleShortSetUp(). */
 FROND_EXTERN PetscErrorCode CoupleShortSetSamples(CoupleShort sr, PetscInt n);
-/* Forces act between nearest images. period: 3, m; 0 for none. */
+/* Forces act between nearest images. sr: the forces. period: 3, m; 0 for none. */
 FROND_EXTERN PetscErrorCode CoupleShortSetPeriod(CoupleShort sr, const PetscReal period[3]);
-/* A flat wall at rest, at most 6. x: 3, a point of its face, m. normal: 3, into the free side, of any length > 0. */
+/* A flat wall at rest, at most 6. sr: the forces. x: 3, a point of its face, m. normal: 3, into the free side, of any length > 0.
+ */
 FROND_EXTERN PetscErrorCode CoupleShortAddWall(CoupleShort sr, const PetscReal x[3], const PetscReal normal[3]);
-/* Read -couple_shortrange_samples and the options of ShortRangeSetFromOptions(). */
+/* Read -couple_shortrange_samples and the options of ShortRangeSetFromOptions(). sr: the forces. */
 FROND_EXTERN PetscErrorCode CoupleShortSetFromOptions(CoupleShort sr);
-/* Check the parameters; refuse beams that overlap each other, a body or a wall, naming both. */
+/* Check the parameters; refuse beams that overlap each other, a body or a wall, naming both. sr: the forces. */
 FROND_EXTERN PetscErrorCode CoupleShortSetUp(CoupleShort sr);
-/* Print the parameters. viewer: an ASCII viewer of PETSc. */
+/* Print the parameters. sr: the forces. viewer: an ASCII viewer of PETSc. */
 FROND_EXTERN PetscErrorCode CoupleShortView(CoupleShort sr, PetscViewer viewer);
 /* Free it. sr: becomes NULL. */
 FROND_EXTERN PetscErrorCode CoupleShortDestroy(CoupleShort *sr);
 /*
-  Add the forces of the coming step to the loads of beams and bodies, which must stand at the same time. h: length of the step, s.
+  Add the forces of the coming step to the loads of beams and bodies, which must stand at the same time. sr: the forces. h: length
+  of the step, s.
 */
 FROND_EXTERN PetscErrorCode CoupleShortApply(CoupleShort sr, PetscReal h);
-/* After the step: take back what the bodies were given (loads of beams are made anew each step). */
+/* After the step: take back what the bodies were given (loads of beams are made anew each step). sr: the forces. */
 FROND_EXTERN PetscErrorCode CoupleShortRemove(CoupleShort sr);
 /*
-  Of the last CoupleShortApply(); each output may be NULL. contacts: number of pairs of points. gap: smallest one, m;
-  PETSC_INFINITY without contacts. held: 3, force of walls and of bodies that are not free on the beams, N. bodies: 3, force of
+  Of the last CoupleShortApply(); each output may be NULL. sr: the forces. contacts: number of pairs of points. gap: smallest one,
+  m; PETSC_INFINITY without contacts. held: 3, force of walls and of bodies that are not free on the beams, N. bodies: 3, force of
   the beams on free bodies, N.
 */
 FROND_EXTERN PetscErrorCode CoupleShortGetForces(CoupleShort sr, PetscInt *contacts, PetscReal *gap, PetscReal held[3],
                                                  PetscReal bodies[3]);
-/* Let a coupling apply them in every step, before its first one. sr: kept, not owned; NULL: none. */
+/* Let a coupling apply them in every step, before its first one. couple: the coupling. sr: kept, not owned; NULL: none. */
 FROND_EXTERN PetscErrorCode CoupleSetShort(Couple couple, CoupleShort sr);
 
 /* Steps up to a time, as CoupleStep(). t: s, after the current one. */

@@ -224,6 +224,11 @@ static PetscErrorCode BodyView(Rigid rigid, PetscInt i, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, " m, density %g kg/m^3, locks %s\n", (double)s->density, lock));
   PetscCall(PetscViewerASCIIUseTabs(viewer, PETSC_TRUE));
   PetscCall(PetscViewerASCIIPushTab(viewer));
+  if (b->owng)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "own gravity %g %g %g m/s^2\n", (double)b->g[0], (double)b->g[1], (double)b->g[2]));
+  if (Vec3Norm(b->load) + Vec3Norm(b->moment) > 0.)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "load %g %g %g N, torque %g %g %g N m\n", (double)b->load[0], (double)b->load[1],
+                                     (double)b->load[2], (double)b->moment[0], (double)b->moment[1], (double)b->moment[2]));
   if (rigid->setup) {
     PetscReal w[3];
     RigidBodyOmega(b, b->q, w);

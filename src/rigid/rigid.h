@@ -98,6 +98,12 @@ FROND_EXTERN PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec,
 FROND_EXTERN PetscErrorCode RigidSetGravity(Rigid rigid, const PetscReal g[3]);
 /* For fluids whose own hydrostatic pressure is left out: bodies weigh (m - rho V) g. rho: kg/m^3, >= 0; 0 (default): m g. */
 FROND_EXTERN PetscErrorCode RigidSetFluidDensity(Rigid rigid, PetscReal rho);
+/* Gravitational acceleration of one body in place of RigidSetGravity()'s; displaced fluid keeps that one. body: number. g: 3,
+   space frame, m/s^2, finite. */
+FROND_EXTERN PetscErrorCode RigidSetBodyGravity(Rigid rigid, PetscInt body, const PetscReal g[3]);
+/* A permanent load on a body, until it is set again; not part of its state. body: number. F: 3, in the centre of mass, N. T: 3,
+   torque about it, N m; both of fixed direction, finite; NULL for none. */
+FROND_EXTERN PetscErrorCode RigidSetBodyLoad(Rigid rigid, PetscInt body, const PetscReal F[3], const PetscReal T[3]);
 /* Read -rigid_... (with the prefix). */
 FROND_EXTERN PetscErrorCode RigidSetFromOptions(Rigid rigid);
 /* Mass properties and initial state; after it the state functions may be called and bodies no longer added. */

@@ -16,6 +16,9 @@ typedef struct {
   PetscReal F[3], T[3];   /* wrench collected for the next step, N, N m */
   PetscReal Fs[3], Ts[3]; /* short-range wrench of the present half step */
   PetscReal Fused[3], Tused[3]; /* all wrenches of the last step but gravity's */
+  PetscReal load[3], moment[3]; /* permanent, N, N m */
+  PetscReal g[3];               /* own gravity, m/s^2 */
+  PetscBool owng;               /* whether that takes the place of the common one */
   PetscInt ntable;              /* prescribed: motion table, times and n x 6 velocities; NULL for constants */
   PetscReal *tabletime, *table;
 } RigidBody;

@@ -78,25 +78,58 @@ static void BuoyancyArm(const RigidBody *b, PetscReal r[3])
   QuatRotate(b->q, b->spec.geometry ? b->spec.geometry->centroid : zero, r);
 }
 
-/* Gravity less the weight of the displaced fluid, which acts in the centroid of the volume. */
+static PetscErrorCode CheckVector(Rigid rigid, PetscInt body, const char what[], const PetscReal x[3])
+{
+  PetscFunctionBegin;
+  PetscCheck(body >= 0 && body < rigid->n, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT ": there are %" PetscInt_FMT " bodies", body, rigid->n);
+  PetscCheck(!x || !PetscIsInfOrNanReal(x[0] + x[1] + x[2]), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid body %" PetscInt_FMT ": %s = (%g, %g, %g) must be finite", body, what, (double)x[0], (double)x[1],
+             (double)x[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetBodyGravity(Rigid rigid, PetscInt body, const PetscReal g[3])
+{
+  PetscFunctionBegin;
+  PetscCall(CheckVector(rigid, body, "gravity", g));
+  PetscCall(PetscArraycpy(rigid->body[body].g, g, 3));
+  rigid->body[body].owng = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidSetBodyLoad(Rigid rigid, PetscInt body, const PetscReal F[3], const PetscReal T[3])
+{
+  PetscFunctionBegin;
+  PetscCall(CheckVector(rigid, body, "load", F));
+  PetscCall(CheckVector(rigid, body, "torque", T));
+  for (int k = 0; k < 3; k++) {
+    rigid->body[body].load[k] = F ? F[k] : 0.;
+    rigid->body[body].moment[k] = T ? T[k] : 0.;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gravity less the weight of the displaced fluid, which acts in the centroid of the volume, and the permanent load. */
 void RigidBodyWeight(Rigid rigid, const RigidBody *b, PetscReal F[3], PetscReal T[3])
 {
-  const PetscReal lift = -rigid->rhofluid * b->volume;
+  const PetscReal lift = -rigid->rhofluid * b->volume, *g = b->owng ? b->g : rigid->g;
   PetscReal r[3], rxg[3];
   BuoyancyArm(b, r);
   Vec3Cross(r, rigid->g, rxg);
   for (int k = 0; k < 3; k++) {
-    F[k] = (b->spec.mass + lift) * rigid->g[k];
-    T[k] = lift * rxg[k];
+    F[k] = b->spec.mass * g[k] + lift * rigid->g[k] + b->load[k];
+    T[k] = lift * rxg[k] + b->moment[k];
   }
 }
 
+/* Of weight and permanent force; a torque of fixed direction has none. */
 PetscReal RigidBodyPotential(Rigid rigid, const RigidBody *b)
 {
-  const PetscReal lift = -rigid->rhofluid * b->volume;
+  const PetscReal lift = -rigid->rhofluid * b->volume, *g = b->owng ? b->g : rigid->g;
   PetscReal r[3];
   BuoyancyArm(b, r);
-  return -(b->spec.mass + lift) * Vec3Dot(rigid->g, b->X) - lift * Vec3Dot(rigid->g, r);
+  return -b->spec.mass * Vec3Dot(g, b->X) - lift * (Vec3Dot(rigid->g, b->X) + Vec3Dot(rigid->g, r)) - Vec3Dot(b->load, b->X);
 }
 
 /* Eqs. 12, 14 for the last wrench: J alpha = T - w x J w in the space frame. */
