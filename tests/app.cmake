@@ -31,3 +31,7 @@ set_tests_properties(app_paraview PROPERTIES LABELS unit TIMEOUT 120 SKIP_RETURN
 
 add_test(NAME format COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/format.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(format PROPERTIES LABELS unit TIMEOUT 60 SKIP_RETURN_CODE 77)
+frond_app_test(app_bodies validation)
+add_test(NAME app_bodies_fine COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${FROND_TEST_PYTHON}
+  ${CMAKE_CURRENT_SOURCE_DIR}/app_bodies.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_bodies_fine ${PROJECT_SOURCE_DIR} fine)
+set_tests_properties(app_bodies_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
