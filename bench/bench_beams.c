@@ -96,8 +96,7 @@ static PetscErrorCode Run(const Solver *s, const char more[], PetscInt beams, Pe
   malloc_trim(0);
   before = ResidentBytes();
   if (newton > 0)
-    snprintf(options, sizeof(options),
-             "%s %s -ancf_snes_max_it %d -ancf_snes_convergence_test skip -ancf_snes_linesearch_type basic", s->options, more,
+    snprintf(options, sizeof(options), "%s %s -ancf_snes_max_it %d -ancf_snes_convergence_test skip", s->options, more,
              (int)newton);
   else
     snprintf(options, sizeof(options), "%s %s", s->options, more);

@@ -54,16 +54,27 @@ static inline void AncfClearFixed(const Ancf ancf, const AncfBatch *b, PetscInt 
 static inline void AncfGatherLane(const Ancf ancf, const AncfLaneBeams *b, PetscInt k, const PetscReal *x, PetscInt stride,
                                   const PetscReal *fix, AncfLanes out[6])
 {
+  const PetscBool full = k <= b->least ? PETSC_TRUE : PETSC_FALSE;
+  unsigned char any = 0;
+
+  if (PetscLikely(full)) { /* no branch between the lanes */
+    const PetscReal *p[ANCF_LANES];
+
+    for (int i = 0; i < ANCF_LANES; i++) {
+      p[i] = x + (b->first[i] + k) * stride;
+      any |= ancf->fixed[b->first[i] + k];
+    }
+    for (int c = 0; c < 6; c++) out[c] = (AncfLanes){p[0][c], p[1][c], p[2][c], p[3][c], p[4][c], p[5][c], p[6][c], p[7][c]};
+    if (PetscLikely(!any)) return;
+  }
   for (int i = 0; i < ANCF_LANES; i++) {
     const PetscInt j = b->first[i] + k;
-    const PetscReal *xj = x + j * stride;
     unsigned char f;
 
     if (k > b->elements[i]) continue;
     f = ancf->fixed[j];
-    for (int c = 0; c < 6; c++) out[c][i] = xj[c];
-    if (PetscUnlikely(f))
-      for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++) out[c][i] = fix ? fix[6 * j + c] : 0;
+    for (int c = 0; c < 6 && !full; c++) out[c][i] = x[j * stride + c];
+    for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++) out[c][i] = fix ? fix[6 * j + c] : 0;
   }
 }
 

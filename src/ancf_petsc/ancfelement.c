@@ -7,9 +7,6 @@ static const int sym_row[6] = {0, 0, 0, 1, 1, 2}, sym_col[6] = {0, 1, 2, 1, 2, 2
 static const int sym_of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 static const int off_row[3] = {0, 0, 1}, off_col[3] = {1, 2, 2};
 
-/* Loops over the entries of 3 x 3 blocks, whose indices must be known to the compiler. */
-#define UNROLL _Pragma("GCC unroll 9")
-
 /* Eq. 19 */
 void AncfShape(PetscReal xi, PetscReal l, PetscReal S[4])
 {
@@ -183,7 +180,7 @@ static inline void BendingPoint(const AncfRule *rule, const AncfSection *s, Pets
   c = Dot(r2, r2);
   BendingGradient(rule->strain, Dot(r1, r1), b, c, ip, &v);
   BendingHessian(rule->strain, b, c, ip, &v);
-  UNROLL
+  ANCF_UNROLL
   for (int m = 0; m < 3; m++) {
     const AncfLanes g1 = w * (2.0 * v.a * r1[m] + v.b * r2[m]), g2 = wA * (v.b * r1[m] + 2.0 * v.c * r2[m]);
 
@@ -192,7 +189,7 @@ static inline void BendingPoint(const AncfRule *rule, const AncfSection *s, Pets
   const AncfLanes aaA = 4.0 * wA * v.aa, abA = 2.0 * wA * v.ab, bbA = wA * v.bb, abB = 2.0 * wB * v.ab, acB = 4.0 * wB * v.ac,
                   bbB = wB * v.bb, bbC = wC * v.bb;
 
-  UNROLL
+  ANCF_UNROLL
   for (int m = 0; m < 6; m++) {
     const int i = sym_row[m], j = sym_col[m];
     const AncfLanes r11 = r1[i] * r1[j];
@@ -200,14 +197,14 @@ static inline void BendingPoint(const AncfRule *rule, const AncfSection *s, Pets
     p->A[m] = aaA * r11 + abA * (r1[i] * r2[j] + r2[i] * r1[j]) + bbA * r2[i] * r2[j];
     p->C[m] = bbC * r11;
   }
-  UNROLL
+  ANCF_UNROLL
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++) p->B[3 * i + j] = abB * r1[i] * r1[j] + acB * r1[i] * r2[j] + bbB * r2[i] * r1[j];
     p->A[sym_of[i][i]] += 2.0 * wA * v.a;
     p->B[4 * i] += wB * v.b;
     p->C[sym_of[i][i]] += 2.0 * wC * v.c;
   }
-  UNROLL
+  ANCF_UNROLL
   for (int m = 0; m < 6; m++) p->S[m] = p->B[3 * sym_row[m] + sym_col[m]] + p->B[3 * sym_col[m] + sym_row[m]];
 }
 
@@ -228,7 +225,7 @@ static inline void AxialPoint(const AncfRule *rule, const AncfSection *s, PetscI
     for (int i = 0; i < 3; i++) q[i][c] += s1[i] * nr;
   }
   t = 2.0 * w * il * f[2];
-  UNROLL
+  ANCF_UNROLL
   for (int m = 0; m < 6; m++) A[m] += t * r1[sym_row[m]] * r1[sym_col[m]];
   for (int i = 0; i < 3; i++) A[sym_of[i][i]] += n * il;
 }
@@ -237,21 +234,21 @@ static inline void AxialPoint(const AncfRule *rule, const AncfSection *s, PetscI
 static inline __attribute__((always_inline)) void BlocksToTangent(const AncfGauss *g, const int n, const PointBlocks *p,
                                                                   AncfLanes K[ANCF_TANGENT])
 {
-  UNROLL for (int m = 0; m < 6; m++) for (int i = 0; i < 3; i++)
+  ANCF_UNROLL for (int m = 0; m < 6; m++) for (int i = 0; i < 3; i++)
   {
     AncfLanes k = {0};
 
-    UNROLL for (int q = 0; q < n; q++) k +=
+    ANCF_UNROLL for (int q = 0; q < n; q++) k +=
         g->diag[i][q][0] * p[q].A[m] + g->diag[i][q][1] * p[q].S[m] + g->diag[i][q][2] * p[q].C[m];
     K[6 * i + m] = k;
   }
-  UNROLL for (int m = 0; m < 9; m++) for (int t = 0; t < 3; t++)
+  ANCF_UNROLL for (int m = 0; m < 9; m++) for (int t = 0; t < 3; t++)
   {
     const int sym = sym_of[m / 3][m % 3], mt = 3 * (m % 3) + m / 3;
     AncfLanes k = {0};
 
-    UNROLL for (int q = 0; q < n; q++) k += g->off[t][q][0] * p[q].A[sym] + g->off[t][q][1] * p[q].B[m] +
-                                            g->off[t][q][2] * p[q].B[mt] + g->off[t][q][3] * p[q].C[sym];
+    ANCF_UNROLL for (int q = 0; q < n; q++) k += g->off[t][q][0] * p[q].A[sym] + g->off[t][q][1] * p[q].B[m] +
+                                                 g->off[t][q][2] * p[q].B[mt] + g->off[t][q][3] * p[q].C[sym];
     K[18 + 9 * t + m] = k;
   }
 }

@@ -15,6 +15,8 @@
 
 #define ANCF_LANES 8
 #define ANCF_MAX_GAUSS 8
+/* Loops over the entries of 3 x 3 blocks, whose indices must be known to the compiler. */
+#define ANCF_UNROLL _Pragma("GCC unroll 9")
 typedef PetscReal AncfLanes __attribute__((vector_size(ANCF_LANES * sizeof(PetscReal))));
 
 /* Gauss points on [0,1] with weights and the derivatives of the shape functions in xi. The element length enters through

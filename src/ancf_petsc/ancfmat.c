@@ -207,57 +207,41 @@ PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coordinates of node `node` of each lane's beam, fixed ones replaced; lanes past their end stay as they are. */
-static inline void ShellNode(const AncfShell *s, const PetscInt chain[ANCF_LANES], PetscInt node, AncfLanes x[6])
+/* Mass matrix of the lanes' elements for one direction; shift included in mass. */
+static inline void ShellMass(AncfLanes mass, AncfLanes l, AncfLanes m[4][4])
 {
-  for (int i = 0; i < ANCF_LANES; i++) {
-    PetscInt j;
-
-    if (chain[i] < 0 || node >= s->length[chain[i]]) continue;
-    j = s->first[chain[i]] + node;
-    for (int c = 0; c < 6; c++) x[c][i] = s->e[6 * j + c];
-    if (PetscUnlikely(s->ancf->fixed[j]))
-      for (int c = s->ancf->fixed[j] & ANCF_FIX_POSITION ? 0 : 3; c < (s->ancf->fixed[j] & ANCF_FIX_GRADIENT ? 6 : 3); c++)
-        x[c][i] = s->ancf->rest[6 * j + c];
-  }
-}
-
-/* Adds the four 6 x 6 blocks of the element between two rows; r_0 rows and columns are minus those of r_1. */
-static inline void ShellAdd(const AncfLanes K[ANCF_TANGENT], AncfLanes mass, AncfLanes l, AncfLanes *D0, AncfLanes *U,
-                            AncfLanes *D1)
-{
-  static const int sym[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  const AncfLanes one = {1, 1, 1, 1, 1, 1, 1, 1}, scale[2] = {one, l};
   PetscReal t[16];
-  AncfLanes m[4][4];
 
   AncfElementMass(1, 1, t);
   for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) m[i][j] = t[4 * i + j] * mass * (i % 2 ? l : 0 * l + 1) * (j % 2 ? l : 0 * l + 1);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      const AncfLanes aa = K[sym[i][j]], bb = K[6 + sym[i][j]], cc = K[12 + sym[i][j]];
-      const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j];
+    for (int j = 0; j < 4; j++) m[i][j] = t[4 * i + j] * mass * scale[i % 2] * scale[j % 2];
+}
 
-      D0[6 * i + 3 + j] -= ba;
-      U[6 * i + j] = -bb;
-      U[6 * i + 3 + j] = -bc;
-      U[6 * (3 + i) + j] = ab;
-      U[6 * (3 + i) + 3 + j] = ac;
-      D1[6 * i + 3 + j] = bc;
-      if (j < i) continue; /* the lower triangles are not read */
-      D0[6 * i + j] += bb;
-      D0[6 * (3 + i) + 3 + j] += aa;
-      D1[6 * i + j] = bb;
-      D1[6 * (3 + i) + 3 + j] = cc;
-    }
-  for (int c = 0; c < 3; c++)
-    for (int i = 0; i < 2; i++)
-      for (int j = 0; j < 2; j++) {
-        U[6 * (3 * i + c) + 3 * j + c] += m[i][2 + j];
-        if (j < i) continue;
-        D0[6 * (3 * i + c) + 3 * j + c] += m[i][j];
-        D1[6 * (3 * i + c) + 3 * j + c] += m[2 + i][2 + j];
-      }
+/* Adds the four 6 x 6 blocks of the element between two rows; r_0 rows and columns are minus those of r_1. */
+static inline void ShellAdd(const AncfLanes K[ANCF_TANGENT], AncfLanes m[4][4], AncfLanes *D0, AncfLanes *U, AncfLanes *D1)
+{
+  static const int sym[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+
+  ANCF_UNROLL for (int i = 0; i < 3; i++) ANCF_UNROLL for (int j = 0; j < 3; j++)
+  {
+    const AncfLanes aa = K[sym[i][j]], bb = K[6 + sym[i][j]], cc = K[12 + sym[i][j]];
+    const AncfLanes ab = K[18 + 3 * i + j], ba = K[18 + 3 * j + i], ac = K[27 + 3 * i + j], bc = K[36 + 3 * i + j];
+    const AncfLanes zero = {0};
+    const int same = i == j; /* the mass couples equal directions */
+
+    D0[6 * i + 3 + j] -= same ? ba - m[0][1] : ba;
+    U[6 * i + j] = (same ? m[0][2] : zero) - bb;
+    U[6 * i + 3 + j] = (same ? m[0][3] : zero) - bc;
+    U[6 * (3 + i) + j] = same ? ab + m[1][2] : ab;
+    U[6 * (3 + i) + 3 + j] = same ? ac + m[1][3] : ac;
+    D1[6 * i + 3 + j] = same ? bc + m[2][3] : bc;
+    if (j < i) continue; /* the lower triangles are not read */
+    D0[6 * i + j] += same ? bb + m[0][0] : bb;
+    D0[6 * (3 + i) + 3 + j] += same ? aa + m[1][1] : aa;
+    D1[6 * i + j] = same ? bb + m[2][2] : bb;
+    D1[6 * (3 + i) + 3 + j] = same ? cc + m[3][3] : cc;
+  }
 }
 
 /* Identity rows of eliminated coordinates and of rows past the end of a lane's beam. */
@@ -297,11 +281,34 @@ static void ShellMoments(const AncfShell *s, const PetscInt chain[ANCF_LANES], P
     }
 }
 
+/* The chains of a batch as beams in lanes; those of PCBLOCKTRI come longest first. */
+static inline AncfLaneBeams ShellLanes(const AncfShell *s, const PetscInt chain[ANCF_LANES])
+{
+  AncfLaneBeams b;
+
+  for (int i = 0; i < ANCF_LANES; i++) {
+    const PetscBool used = chain[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+    const AncfBeam *m = &s->ancf->beams[used ? chain[i] : chain[0]];
+
+    b.first[i] = used ? m->node : -1;
+    b.elements[i] = used ? m->spec.elements : -1;
+    b.EA[i] = m->EA;
+    b.EI[i] = m->EI;
+    b.rhoA[i] = m->rhoA;
+    b.l[i] = m->l;
+  }
+  b.most = b.elements[0];
+  b.least = b.elements[ANCF_LANES - 1];
+  return b;
+}
+
 static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D, AncfLanes *U)
 {
   const AncfShell *s = (const AncfShell *)ctx;
-  const AncfLanes zero = {0}, one = zero + 1.0;
-  AncfLanes e[12] = {zero, zero, zero, one, zero, zero, one, zero, zero, one, zero, zero};
+  const AncfLaneBeams b = ShellLanes(s, chain);
+  const AncfSection full = {AncfLoad(b.EA), AncfLoad(b.EI), AncfLoad(b.l)};
+  const AncfLanes zero = {0}, one = zero + 1.0, fullmass = s->shift * AncfLoad(b.rhoA) * full.l;
+  AncfLanes e[12] = {zero, zero, zero, one, zero, zero, one, zero, zero, one, zero, zero}, m[4][4];
 
   if (s->identity) {
     for (PetscInt j = 0; j < 36 * nrows; j++) {
@@ -311,23 +318,19 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
     return;
   }
   for (int c = 0; c < 36; c++) D[c] = zero;
-  ShellNode(s, chain, 0, e);
+  ShellMass(fullmass, full.l, m);
+  AncfGatherLane(s->ancf, &b, 0, s->e, 6, s->ancf->rest, e);
   for (PetscInt k = 0; k + 1 < nrows; k++) {
-    AncfSection sec = {zero, zero, one};
-    AncfLanes mass = zero, Q[12], K[ANCF_TANGENT];
+    AncfSection sec = full;
+    AncfLanes Q[12], K[ANCF_TANGENT];
 
-    ShellNode(s, chain, k + 1, e + 6);
-    for (int i = 0; i < ANCF_LANES; i++) {
-      const AncfBeam *b = &s->ancf->beams[chain[i] < 0 ? 0 : chain[i]];
+    AncfGatherLane(s->ancf, &b, k + 1, s->e, 6, s->ancf->rest, e + 6);
+    if (k >= b.least) {
+      AncfLanes mass = fullmass;
 
-      if (chain[i] < 0 || k >= b->spec.elements) {
-        AncfIdleLane(i, &sec, &mass, e);
-        continue;
-      }
-      sec.EA[i] = b->EA;
-      sec.EI[i] = b->EI;
-      sec.l[i] = b->l;
-      mass[i] = s->shift * b->rhoA * b->l;
+      for (int i = 0; i < ANCF_LANES; i++)
+        if (k >= b.elements[i]) AncfIdleLane(i, &sec, &mass, e);
+      ShellMass(mass, sec.l, m);
     }
     AncfElementTangent(&s->ancf->rule, &sec, e, Q, K);
     if (s->ancf->natural) {
@@ -337,7 +340,7 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
       AncfRestTangent(s->ancf, node, &sec, e, K);
     }
     if (s->v) AncfViscousChain(s->ancf, chain, k, e, s->v, s->spin, s->gv, K);
-    ShellAdd(K, mass, sec.l, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
+    ShellAdd(K, m, D + 36 * k, U + 36 * k, D + 36 * (k + 1));
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];
   }
   if (s->ancf->moment) ShellMoments(s, chain, nrows, D);

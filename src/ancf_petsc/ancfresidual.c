@@ -97,12 +97,13 @@ static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e,
 PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
                             PetscInt fstride)
 {
-  const PetscReal scale = ancf->loadscale;
+  const PetscReal scale = ancf->loadscale, *PETSC_RESTRICT steady = ancf->steady, *PETSC_RESTRICT load = ancf->load;
+  PetscReal *PETSC_RESTRICT r = f;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
-    for (PetscInt c = 0; c < 6; c++) f[j * fstride + c] = -scale * (ancf->steady[6 * j + c] + ancf->load[6 * j + c]);
+    ANCF_UNROLL for (PetscInt c = 0; c < 6; c++) r[j * fstride + c] = -scale * (steady[6 * j + c] + load[6 * j + c]);
   if (ancf->loadnow != 0)
     for (PetscInt j = 0; j < ancf->nnodes; j++)
       for (PetscInt c = 0; c < 6; c++)

@@ -270,6 +270,52 @@ static PetscErrorCode AncfPostStep(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sum of squares in six parts, as the coordinates come: additions need not wait for one another. */
+static PetscReal AncfNorm(PetscInt n, const PetscReal *x)
+{
+  PetscReal s[6] = {0};
+
+  for (PetscInt i = 0; i + 6 <= n; i += 6)
+    for (int c = 0; c < 6; c++) s[c] += x[i + c] * x[i + c];
+  for (PetscInt i = n - n % 6; i < n; i++) s[0] += x[i] * x[i];
+  return PetscSqrtReal(s[0] + s[1] + s[2] + s[3] + s[4] + s[5]);
+}
+
+/*
+  Line search of the default: full steps (times -snes_linesearch_damping). Bending first stretches the chord, so that the residual
+  rises before it falls; a step that fails is reduced. The same as SNESLINESEARCHBASIC in one pass over the vectors.
+*/
+static PetscErrorCode AncfFullStep(SNESLineSearch search, void *ctx)
+{
+  PetscReal lambda, xnorm, ynorm, fnorm;
+  PetscScalar *x;
+  const PetscScalar *y;
+  PetscInt n;
+  Vec X, F, Y;
+  SNES snes;
+
+  PetscFunctionBegin;
+  (void)ctx;
+  PetscCall(SNESLineSearchGetVecs(search, &X, &F, &Y, NULL, NULL));
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  PetscCall(VecGetLocalSize(X, &n));
+  PetscCall(VecGetArray(X, &x));
+  PetscCall(VecGetArrayRead(Y, &y));
+  for (PetscInt i = 0; i < n; i++) x[i] -= lambda * y[i];
+  xnorm = AncfNorm(n, x);
+  ynorm = AncfNorm(n, y);
+  PetscCall(VecRestoreArrayRead(Y, &y));
+  PetscCall(VecRestoreArray(X, &x));
+  PetscCall(SNESComputeFunction(snes, X, F));
+  PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_SUCCEEDED)); /* SNES itself looks for a NaN in the norm */
+  PetscCall(VecGetArrayRead(F, &y));
+  fnorm = AncfNorm(n, y);
+  PetscCall(VecRestoreArrayRead(F, &y));
+  PetscCall(SNESLineSearchSetNorms(search, xnorm, fnorm, ynorm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Defaults of the solver stack, all changeable by -ancf_ts_..., -ancf_snes_..., -ancf_ksp_..., -ancf_pc_.... */
 PetscErrorCode AncfTSCreate(Ancf ancf)
 {
@@ -294,9 +340,13 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESSetTolerances(snes, 1e-50, 1e-9, 1e-12, 25, 10000));
   PetscCall(SNESSetForceIteration(snes, PETSC_TRUE)); /* the floor of AncfSetNewtonFloor() must not swallow small loads */
-  /* Full steps: bending first stretches the chord, so that the residual rises before it falls; a step that fails is reduced. */
   PetscCall(SNESGetLineSearch(snes, &search));
-  PetscCall(SNESLineSearchSetType(search, ANCF_FULL_STEP));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
+#if PETSC_VERSION_LT(3, 21, 0)
+  PetscCall(SNESLineSearchShellSetUserFunc(search, AncfFullStep, NULL));
+#else
+  PetscCall(SNESLineSearchShellSetApply(search, AncfFullStep, NULL));
+#endif
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));

@@ -8,7 +8,7 @@
 typedef BlockTriLanes Lanes;
 
 typedef struct {
-  PetscInt chain[BLOCKTRI_LANES], nrows; /* longest chain first */
+  PetscInt chain[BLOCKTRI_LANES], nrows, shortest; /* longest chain first, -1: unused lane */
   PetscInt first[BLOCKTRI_LANES], length[BLOCKTRI_LANES];
   size_t offset; /* of its first row in the stored factors, rows */
 } Batch;
@@ -54,63 +54,87 @@ static inline __attribute__((always_inline)) void Solve(const int bs, const int 
   }
 }
 
-/* C -= A B, or A^T B */
-static inline __attribute__((always_inline)) void Subtract(const int bs, const int nx, const Lanes *A, int transposed,
-                                                           const Lanes *B, Lanes *C)
+/* C -= A B */
+static inline __attribute__((always_inline)) void Subtract(const int bs, const int nx, const Lanes *A, const Lanes *B, Lanes *C)
 {
   for (int i = 0; i < bs; i++)
-    for (int k = 0; k < bs; k++) {
-      const Lanes a = transposed ? A[bs * k + i] : A[bs * i + k];
-
-      for (int c = 0; c < nx; c++) C[nx * i + c] -= a * B[nx * k + c];
-    }
+    for (int k = 0; k < bs; k++)
+      for (int c = 0; c < nx; c++) C[nx * i + c] -= A[bs * i + k] * B[nx * k + c];
 }
 
-/* A = L D L^T of a symmetric matrix given by its upper triangle: row k then holds column k of L, the diagonal 1/D. */
+/* A = L D L^T of a symmetric matrix given by its upper triangle: row k then holds column k of L, the diagonal 1/D. Sums stay in
+   registers here and below: a sum kept in memory would wait for its own store. */
 static inline __attribute__((always_inline)) void LDL(const int bs, Lanes *A)
 {
-  for (int k = 0; k < bs; k++) {
-    const Lanes inv = 1.0 / A[bs * k + k];
+  for (int i = 0; i < bs; i++) {
+    Lanes d = A[bs * i + i];
 
-    A[bs * k + k] = inv;
-    for (int i = k + 1; i < bs; i++) {
-      const Lanes l = A[bs * k + i] * inv;
+    for (int k = 0; k < i; k++) d -= A[bs * k + i] * A[bs * k + i] * A[bs * k + k]; /* rows above hold D L^T until the end */
+    A[bs * i + i] = d = 1.0 / d;
+    for (int j = i + 1; j < bs; j++) {
+      Lanes a = A[bs * i + j];
 
-      for (int j = i; j < bs; j++) A[bs * i + j] -= l * A[bs * k + j];
+      for (int k = 0; k < i; k++) a -= A[bs * k + i] * A[bs * k + k] * A[bs * k + j];
+      A[bs * i + j] = a;
     }
-    for (int i = k + 1; i < bs; i++) A[bs * k + i] *= inv;
   }
+  for (int i = 0; i < bs; i++)
+    for (int j = i + 1; j < bs; j++) A[bs * i + j] *= A[bs * i + i];
 }
 
-static inline __attribute__((always_inline)) void LDLSolve(const int bs, const int nx, const Lanes *A, Lanes *X)
+/* X := L^-1 X */
+static inline __attribute__((always_inline)) void LowerSolve(const int bs, const int nx, const Lanes *A, Lanes *X)
 {
-  for (int k = 0; k < bs; k++)
-    for (int i = k + 1; i < bs; i++)
-      for (int c = 0; c < nx; c++) X[nx * i + c] -= A[bs * k + i] * X[nx * k + c];
-  for (int i = bs - 1; i >= 0; i--)
+  for (int i = 1; i < bs; i++)
     for (int c = 0; c < nx; c++) {
-      Lanes x = X[nx * i + c] * A[bs * i + i];
+      Lanes x = X[nx * i + c];
 
-      for (int k = i + 1; k < bs; k++) x -= A[bs * i + k] * X[nx * k + c];
+      for (int k = 0; k < i; k++) x -= A[bs * k + i] * X[nx * k + c];
       X[nx * i + c] = x;
     }
 }
 
-/* Upper triangle of C -= A^T B, known to be symmetric. */
-static inline __attribute__((always_inline)) void SubtractUpper(const int bs, const Lanes *A, const Lanes *B, Lanes *C)
+/* Eliminates a row: upper triangle of C -= W^T D^-1 W, z1 -= W^T D^-1 z0; V is work space of the size of W. */
+static inline __attribute__((always_inline)) void Eliminate(const int bs, const Lanes *A, const Lanes *W, Lanes *C,
+                                                            const Lanes *z0, Lanes *z1, Lanes *V)
 {
-  for (int i = 0; i < bs; i++)
+  for (int k = 0; k < bs; k++)
+    for (int i = 0; i < bs; i++) V[bs * k + i] = W[bs * k + i] * A[bs * k + k];
+  for (int i = 0; i < bs; i++) {
+    Lanes z = z1[i];
+
+    for (int k = 0; k < bs; k++) z -= V[bs * k + i] * z0[k];
+    z1[i] = z;
     for (int j = i; j < bs; j++) {
       Lanes c = C[bs * i + j];
 
-      for (int k = 0; k < bs; k++) c -= A[bs * k + i] * B[bs * k + j];
+      for (int k = 0; k < bs; k++) c -= V[bs * k + i] * W[bs * k + j];
       C[bs * i + j] = c;
     }
+  }
+}
+
+/* z := L^-T D^-1 z */
+static inline __attribute__((always_inline)) void UpperSolve(const int bs, const Lanes *A, Lanes *z)
+{
+  for (int i = bs - 1; i >= 0; i--) {
+    Lanes x = z[i] * A[bs * i + i];
+
+    for (int k = i + 1; k < bs; k++) x -= A[bs * i + k] * z[k];
+    z[i] = x;
+  }
 }
 
 static inline __attribute__((always_inline)) void Gather(const int bs, const Batch *b, PetscInt row, const PetscScalar *x,
                                                          Lanes *y)
 {
+  if (row < b->shortest) { /* no branch between the lanes */
+    const PetscScalar *s[BLOCKTRI_LANES];
+
+    for (int i = 0; i < BLOCKTRI_LANES; i++) s[i] = x + (b->first[i] + row) * bs;
+    for (int c = 0; c < bs; c++) y[c] = (Lanes){s[0][c], s[1][c], s[2][c], s[3][c], s[4][c], s[5][c], s[6][c], s[7][c]};
+    return;
+  }
   for (int i = 0; i < BLOCKTRI_LANES; i++) {
     const PetscScalar *s = x + (b->first[i] + row) * bs;
 
@@ -129,27 +153,29 @@ static inline __attribute__((always_inline)) void Scatter(const int bs, const Ba
       for (int c = 0; c < bs; c++) x[(b->first[i] + row) * bs + c] = y[c][i];
 }
 
-/* One batch, blocks made by the source: elimination and forward sweep together, then the backward sweep. */
+/*
+  One batch, blocks made by the source: A = L D L^T and forward sweep together, then the backward sweep. Row j keeps L_j, D_j and
+  W_j = L_j^-1 U_j, so that the next row loses W_j^T D_j^-1 W_j; no block is inverted.
+*/
 static inline __attribute__((always_inline)) void FusedBatch(const int bs, const BlockTriSource *s, const Batch *b, Lanes *work,
                                                              const PetscScalar *x, PetscScalar *y)
 {
   const PetscInt n = b->nrows, m = bs * bs;
-  Lanes *D = work, *U = D + n * m, *z = U + n * m, *L = z + n * bs;
+  Lanes *D = work, *U = D + n * m, *z = U + n * m, *V = z + n * bs;
 
   s->fill(s->ctx, b->chain, n, D, U);
   Gather(bs, b, 0, x, z);
   for (PetscInt j = 0; j < n; j++) {
     LDL(bs, D + j * m);
-    LDLSolve(bs, 1, D + j * m, z + j * bs);
+    LowerSolve(bs, 1, D + j * m, z + j * bs);
     if (j + 1 == n) break;
-    for (PetscInt i = 0; i < m; i++) L[i] = U[j * m + i]; /* the block below is its transpose */
-    LDLSolve(bs, bs, D + j * m, U + j * m);
-    SubtractUpper(bs, L, U + j * m, D + (j + 1) * m);
+    LowerSolve(bs, bs, D + j * m, U + j * m);
     Gather(bs, b, j + 1, x, z + (j + 1) * bs);
-    Subtract(bs, 1, L, 1, z + j * bs, z + (j + 1) * bs);
+    Eliminate(bs, D + j * m, U + j * m, D + (j + 1) * m, z + j * bs, z + (j + 1) * bs, V);
   }
   for (PetscInt j = n - 1; j >= 0; j--) {
-    if (j + 1 < n) Subtract(bs, 1, U + j * m, 0, z + (j + 1) * bs, z + j * bs);
+    if (j + 1 < n) Subtract(bs, 1, U + j * m, z + (j + 1) * bs, z + j * bs);
+    UpperSolve(bs, D + j * m, z + j * bs);
     Scatter(bs, b, j, z + j * bs, y);
   }
 }
@@ -164,7 +190,7 @@ static inline __attribute__((always_inline)) void FactorBatch(const int bs, cons
     LU(bs, D);
     if (j + 1 == b->nrows) break;
     Solve(bs, bs, D, U);
-    Subtract(bs, bs, L, 0, U, D + 3 * m);
+    Subtract(bs, bs, L, U, D + 3 * m);
   }
 }
 
@@ -177,11 +203,11 @@ static inline __attribute__((always_inline)) void SolveBatch(const int bs, const
     const Lanes *D = factor + 3 * m * j;
 
     Gather(bs, b, j, x, z + j * bs);
-    if (j) Subtract(bs, 1, D - m, 0, z + (j - 1) * bs, z + j * bs);
+    if (j) Subtract(bs, 1, D - m, z + (j - 1) * bs, z + j * bs);
     Solve(bs, 1, D, z + j * bs);
   }
   for (PetscInt j = n - 1; j >= 0; j--) {
-    if (j + 1 < n) Subtract(bs, 1, factor + 3 * m * j + m, 0, z + (j + 1) * bs, z + j * bs);
+    if (j + 1 < n) Subtract(bs, 1, factor + 3 * m * j + m, z + (j + 1) * bs, z + j * bs);
     Scatter(bs, b, j, z + j * bs, y);
   }
 }
@@ -308,6 +334,7 @@ static PetscErrorCode MakeBatches(BlockTri *t)
       b->length[i] = c < 0 ? 0 : length[c];
       b->nrows = PetscMax(b->nrows, b->length[i]);
     }
+    b->shortest = b->length[BLOCKTRI_LANES - 1];
     b->offset = t->rows;
     t->rows += (size_t)b->nrows;
     t->maxrows = PetscMax(t->maxrows, b->nrows);
