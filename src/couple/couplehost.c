@@ -221,13 +221,16 @@ static PetscErrorCode ApplyLoads_Host(CoupleSurface surface, const PetscReal *lo
 /* The normals of the sections carried along to the structure's present state. */
 static PetscErrorCode CarryNormals(Host *h)
 {
-  const PetscReal *qddot;
+  const PetscReal *q, *v;
 
   PetscFunctionBegin;
   if (!h->slope) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Extrapolate(h, 0.0, &qddot));
+  /* The tangents need no accelerations, which a structure may have to compute for all its bodies: velocities in their place. */
+  PetscCall((*h->ops.getstate)(h->ctx, NULL, &q, &v, NULL));
+  PetscCall(PetscArraycpy(h->q, q, 3 * h->nnodes));
+  PetscCall(PetscArraycpy(h->qdot, v, 3 * h->nnodes));
   for (PetscInt s = 0; s < h->nsections; s++) {
-    MoveSection(h, s, qddot);
+    MoveSection(h, s, v);
     PetscCall(PetscArraycpy(h->d1 + 3 * s, h->frame[s].e1, 3));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
