@@ -139,13 +139,21 @@ class Beams:
         if self._own:
             call("AncfCreate", _comm_self(), ctypes.byref(self._h))
 
-    def add(self, start, end, elements, diameter, density, young, end0="free", end1="free", velocity=(0, 0, 0)):
-        """A straight beam between two points (m); diameter m, density kg/m^3, young Pa; ends free, pin or clamp. Its number."""
+    def add(self, start, end, elements, diameter, density, young, end0="free", end1="free", velocity=(0, 0, 0), **more):
+        """A beam between two points (m); diameter m, density kg/m^3, young Pa; ends free, pin or clamp. Its number.
+
+        more: other numbers of AncfBeamSpec by name (EA, EI, rhoA, inner, width, thickness, pretension, curvature, axialdamping,
+        bendingdamping), and normal, a triple.
+        """
         spec, number = _BeamSpec(), Int()
         call("AncfBeamSpecInit", ctypes.byref(spec))
         spec.start, spec.end, spec.velocity = (Real * 3)(*start), (Real * 3)(*end), (Real * 3)(*velocity)
         spec.elements, spec.diameter, spec.density, spec.young = elements, diameter, density, young
         spec.end0, spec.end1 = ENDS[end0], ENDS[end1]
+        for key, value in more.items():
+            if key not in ("EA", "EI", "rhoA", "inner", "width", "thickness", "pretension", "curvature", "normal", "axialdamping", "bendingdamping"):
+                raise TypeError("add() got an unexpected keyword argument '%s'" % key)
+            setattr(spec, key, (Real * 3)(*value) if key == "normal" else value)
         call("AncfAddBeam", self._h, ctypes.byref(spec), ctypes.byref(number))
         return number.value
 

@@ -241,29 +241,37 @@ static PetscErrorCode TestString(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nine arcs swing in their planes: together in lanes and groups, each alone, and in two planes, the same. */
-static PetscErrorCode TestSwing(const char options[], const PetscReal F[3][3], PetscReal tip[9][2])
+#define ARCS 20
+
+static PetscErrorCode CreateArcs(const char options[], const PetscReal F[3][3], Ancf *ancf)
 {
   PetscReal g[3];
-  const PetscReal *e;
   Ancf a;
 
   PetscFunctionBegin;
   PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
-  for (int b = 0; b < 9; b++) {
+  for (int b = 0; b < ARCS; b++) {
     AncfBeamSpec s;
 
-    PetscCall(ArcSpec(0.5 + 0.1 * b, 0.5 + 0.1 * b, 3 + b % 3, F, &s));
-    s.pretension = b - 4;
+    PetscCall(ArcSpec(0.5 + 0.05 * b, 0.5 + 0.05 * b, 3 + b % 3, F, &s));
+    s.pretension = b % 9 - 4;
     if (b == 4) s.bendingdamping = 0.01;
     PetscCall(AncfAddBeam(a, &s, NULL));
   }
   for (int c = 0; c < 3; c++) g[c] = -F[0][c] - 0.5 * F[1][c];
   PetscCall(AncfSetGravity(a, g));
   PetscCall(SetUpWith(a, options, NULL));
-  for (int i = 1; i <= 100; i++) PetscCall(AncfAdvance(a, i * 2e-3));
+  *ancf = a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ArcTips(Ancf a, const PetscReal F[3][3], PetscReal tip[ARCS][2])
+{
+  const PetscReal *e;
+
+  PetscFunctionBegin;
   PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
-  for (int b = 0; b < 9; b++) {
+  for (int b = 0; b < ARCS; b++) {
     AncfBeamSpec s;
     PetscInt first;
 
@@ -273,26 +281,60 @@ static PetscErrorCode TestSwing(const char options[], const PetscReal F[3][3], P
       for (int c = 0; c < 3; c++) tip[b][k] += F[k][c] * e[6 * (first + s.elements) + c];
     }
   }
-  PetscCall(AncfDestroy(&a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Arcs of all sizes swing in their planes: an assembled matrix, beams in lanes, groups, and in an oblique plane, the same. */
 static PetscErrorCode TestSame(void)
 {
-  static const char *const runs[] = {"-ancf_pc_type ilu -ancf_mat_type baij", "-ancf_pc_type blocktri", "-ancf_pc_type blocktri"};
-  PetscReal ref[9][2], tip[9][2];
+  static const char *const runs[] = {"-ancf_pc_type ilu -ancf_mat_type baij", "-ancf_pc_type blocktri",
+                                     "-ancf_pc_type blocktri -ancf_group_nodes 30", "-ancf_pc_type blocktri"};
+  PetscReal ref[ARCS][2], tip[ARCS][2], start[ARCS][2];
 
   PetscFunctionBegin;
-  PetscCall(TestSwing(runs[0], plain, ref));
-  TEST(PetscAbsReal(ref[8][0] - 1.3 * PetscCosReal(1.3)) > 1e-4, "the arcs move");
-  for (int r = 1; r < 3; r++) {
-    PetscReal worst = 0;
+  for (int r = 0; r < 4; r++) {
+    const PetscReal(*F)[3] = r == 3 ? oblique : plain;
+    PetscReal worst = 0, moved = 0;
+    Ancf a;
 
-    PetscCall(TestSwing(runs[r], r == 2 ? oblique : plain, tip));
-    for (int i = 0; i < 18; i++) worst = PetscMax(worst, PetscAbsReal(tip[i / 2][i % 2] - ref[i / 2][i % 2]));
-    printf("nine arcs, %s: off by %.1e\n", r == 2 ? "oblique plane" : "blocktri", worst);
+    PetscCall(CreateArcs(runs[r], F, &a));
+    PetscCall(ArcTips(a, F, start));
+    for (int i = 1; i <= 100; i++) PetscCall(AncfAdvance(a, i * 2e-3));
+    PetscCall(ArcTips(a, F, r ? tip : ref));
+    TEST((a->ngroups > 1) == (r == 2), "run %d has %d groups", r, (int)a->ngroups);
+    PetscCall(AncfDestroy(&a));
+    for (int i = 0; i < 2 * ARCS; i++) {
+      moved = PetscMax(moved, PetscAbsReal(ref[i / 2][i % 2] - start[i / 2][i % 2]));
+      if (r) worst = PetscMax(worst, PetscAbsReal(tip[i / 2][i % 2] - ref[i / 2][i % 2]));
+    }
+    TEST(moved > 1e-3, "the arcs move by %g", (double)moved);
+    if (r) printf("arcs, %-45s %-7s: off by %.1e, moved by %.1e\n", runs[r], r == 3 ? "oblique" : "", worst, moved);
     TEST(worst < 1e-9, "run %d: off by %g", r, (double)worst); /* Newton's tolerance 1e-8 of the step's change */
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A run that goes on from a packed state has the bits of the one that was packed. */
+static PetscErrorCode TestPack(void)
+{
+  PetscReal tip[2][ARCS][2], *state;
+  PetscInt n;
+  Ancf a[2];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) PetscCall(CreateArcs("", plain, &a[k]));
+  for (int i = 1; i <= 20; i++) PetscCall(AncfAdvance(a[0], i * 2e-3));
+  PetscCall(AncfGetPackSize(a[0], &n));
+  PetscCall(PetscMalloc1(n, &state));
+  PetscCall(AncfPack(a[0], state));
+  PetscCall(AncfUnpack(a[1], state));
+  PetscCall(PetscFree(state));
+  for (int k = 0; k < 2; k++) {
+    for (int i = 21; i <= 40; i++) PetscCall(AncfAdvance(a[k], i * 2e-3));
+    PetscCall(ArcTips(a[k], plain, tip[k]));
+    PetscCall(AncfDestroy(&a[k]));
+  }
+  TEST(!memcmp(tip[0], tip[1], sizeof(tip[0])), "an unpacked run has other bits");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -425,6 +467,7 @@ int main(int argc, char **argv)
   PetscCall(TestStraighten());
   PetscCall(TestString());
   PetscCall(TestSame());
+  PetscCall(TestPack());
   PetscCall(TestSections());
   PetscCall(TestStrip());
   PetscCall(TestBad());

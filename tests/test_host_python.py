@@ -105,6 +105,18 @@ with frond.Scene(os.path.join(examples, "beam_vacuum.yaml")) as scene:
     frond.call("AncfGetNumNodes", scene.beam("rod")._beams._h, ctypes.byref(count))
 check(count.value == 33, "33 nodes, not %d" % count.value)
 
+# A prestressed string of a tube keeps its tension; other names are refused.
+string = frond.Beams()
+string.add((0, 0, 0), (1, 0, 0), 4, 0.02, 1000, 1e9, end0="pin", end1="pin", inner=0.01, pretension=50)
+string.setup()
+string.advance(1e-3)
+check(np.abs(string.coordinates[0][:, 1:3]).max() == 0, "a string without loads stays straight")
+try:
+    string.add((0, 0, 0), (1, 0, 0), 4, 0.02, 1000, 1e9, tension=50)
+    check(False, "a wrong name is taken")
+except TypeError as error:
+    check("tension" in str(error), "the error names the argument: %s" % error)
+
 try:
     import petsc4py  # noqa: F401
 
