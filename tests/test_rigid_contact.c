@@ -561,6 +561,18 @@ static PetscErrorCode TestBadInput(void)
   PetscCall(RigidAddBody(r, &s, NULL));
   Refused(RigidSetUp(r), "short period", "body 0", "1.5 m is too short");
   PetscCall(RigidDestroy(&r));
+  for (int bodies = 1; bodies <= 2; bodies++) { /* 3.5 m is enough for a lone sphere of radius 1 m, not for two */
+    const PetscReal period[3] = {3.5, 0., 0.};
+    PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+    PetscCall(RigidSetShortRange(r, &good));
+    PetscCall(RigidSetPeriod(r, period));
+    for (int b = 0; b < bodies; b++) PetscCall(RigidAddBody(r, &s, NULL));
+    if (bodies == 1)
+      PetscCall(RigidSetUp(r));
+    else
+      Refused(RigidSetUp(r), "short period of two", "body 0", "3.5 m is too short");
+    PetscCall(RigidDestroy(&r));
+  }
   /* overlaps at start, both named; touching and fixed pairs pass */
   PetscCall(Overlapping(RIGID_SPHERE, RIGID_SPHERE, .75, RIGID_FREE, &r));
   Refused(RigidCheckOverlap(r, .1), "spheres", "bodies 1 (sphere) and 2 (sphere)", "overlap by 0.25");

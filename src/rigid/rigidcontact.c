@@ -75,12 +75,13 @@ static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spac
     PetscCall(PetscFree(sorted));
   }
   for (PetscInt i = 0; i < rigid->n; i++)
-    for (int k = 0; k < 3; k++)
-      PetscCheck(rigid->period[k] == 0. || IsRound(&rigid->body[i].spec, rigid->dim) == PETSC_FALSE ||
-                     rigid->period[k] >= 2. * (2. * c->radius[i] + reach),
+    for (int k = 0; k < 3; k++) { /* two images of a body may both be near another one; a lone body has its own images only */
+      const PetscReal least = (rigid->n > 1 ? 2. : 1.) * (2. * c->radius[i] + reach);
+      PetscCheck(rigid->period[k] == 0. || IsRound(&rigid->body[i].spec, rigid->dim) == PETSC_FALSE || rigid->period[k] >= least,
                  rigid->comm, PETSC_ERR_ARG_INCOMP,
                  "Rigid body %" PetscInt_FMT ": a period of %g m is too short for nearest images; must be >= %g m", i,
-                 (double)rigid->period[k], 2. * (2. * (double)c->radius[i] + (double)reach));
+                 (double)rigid->period[k], (double)least);
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
