@@ -102,4 +102,42 @@ static inline double Random(void)
   return (double)(s >> 11) / 4503599627370496.0 - 1;
 }
 
+/* n beams from points to points, then joints, options; *ancf is set even after an error. */
+typedef struct {
+  PetscInt beam[4], node[4], n;
+  AncfJointType type;
+} Joint;
+
+static inline PetscErrorCode NetCreate(PetscInt nbeams, const AncfBeamSpec *s, PetscInt njoints, const Joint *j, PetscReal gz,
+                                       const char string[], Ancf *ancf)
+{
+  PetscReal g[3] = {0, 0, gz};
+  PetscOptions options;
+  PetscErrorCode ierr = PETSC_SUCCESS;
+
+  PetscFunctionBegin;
+  PetscCall(AncfCreate(PETSC_COMM_SELF, ancf));
+  for (PetscInt b = 0; b < nbeams; b++) PetscCall(AncfAddBeam(*ancf, &s[b], NULL));
+  for (PetscInt k = 0; k < njoints && !ierr; k++) ierr = AncfAddJoint(*ancf, j[k].type, j[k].n, j[k].beam, j[k].node, NULL);
+  if (ierr) PetscFunctionReturn(ierr);
+  PetscCall(AncfSetGravity(*ancf, g));
+  PetscCall(PetscOptionsCreate(&options));
+  PetscCall(PetscOptionsInsertString(options, string));
+  PetscCall(PetscOptionsPush(options));
+  ierr = AncfSetFromOptions(*ancf);
+  if (!ierr) ierr = AncfSetUp(*ancf);
+  PetscCall(PetscOptionsPop());
+  PetscCall(PetscOptionsDestroy(&options));
+  PetscFunctionReturn(ierr);
+}
+
+static inline void Place(AncfBeamSpec *s, PetscReal x0, PetscReal y0, PetscReal z0, PetscReal x1, PetscReal y1, PetscReal z1,
+                         PetscInt n)
+{
+  const PetscReal a[3] = {x0, y0, z0}, b[3] = {x1, y1, z1};
+
+  for (int c = 0; c < 3; c++) s->start[c] = a[c], s->end[c] = b[c];
+  s->elements = n;
+}
+
 #endif

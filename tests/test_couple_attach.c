@@ -384,6 +384,7 @@ int main(int argc, char **argv)
     PetscCall(TestFlight(1, (AncfEnd)how, 0.2, "-ancf_ts_alpha_radius 1", 1e-3));
     PetscCall(TestFlight(2, (AncfEnd)how, 2, "", 1e-3));
     PetscCall(TestFlight(1, (AncfEnd)how, 5, "-ancf_ts_type theta", 1e-3));
+    PetscCall(TestFlight(1, (AncfEnd)how, 5, "-ancf_constraints multipliers", 1e-3));
     PetscCall(TestPendulum((AncfEnd)how));
   }
   PetscCall(TestPrescribed());

@@ -6,6 +6,7 @@
 PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 
 static const char *const AncfStrains[] = {"paper", "engineering", "AncfStrain", "ANCF_STRAIN_", NULL};
+static const char *const AncfConstraintTypes[] = {"eliminate", "multipliers", "AncfConstraints", "ANCF_CONSTRAINTS_", NULL};
 static const char *const AncfForms[] = {"second order, M eddot + Q^e = Q^a", "first order, y = (e, v)",
                                         "explicit, M factored once", "explicit, symplectic"};
 static const char *const AncfEnds[] = {"free", "pin", "clamp"};
@@ -233,6 +234,7 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   PetscInt n = 3, sub = ancf->substeps, axial = ancf->naxial, bending = ancf->nbending, group = ancf->groupnodes;
   PetscReal rho = ancf->fluiddensity, damping = ancf->damping, stiffness = ancf->stiffnessdamping;
   AncfStrain strain = ancf->strain;
+  AncfConstraints constraints = ancf->constraints;
   PetscBool flg, flg2;
 
   PetscFunctionBegin;
@@ -249,6 +251,9 @@ PetscErrorCode AncfSetFromOptions(Ancf ancf)
   PetscCall(PetscOptionsEnum("-ancf_strain", "Strain measures", "AncfSetStrain", AncfStrains, (PetscEnum)strain,
                              (PetscEnum *)&strain, &flg));
   if (flg) PetscCall(AncfSetStrain(ancf, strain));
+  PetscCall(PetscOptionsEnum("-ancf_constraints", "Supports and joints by elimination or with multipliers", "AncfSetConstraints",
+                             AncfConstraintTypes, (PetscEnum)constraints, (PetscEnum *)&constraints, &flg));
+  if (flg) PetscCall(AncfSetConstraints(ancf, constraints));
   PetscCall(PetscOptionsInt("-ancf_quadrature_axial", "Gauss points per element for the axial energy, 1..8", "AncfSetQuadrature",
                             axial, &axial, &flg));
   PetscCall(PetscOptionsInt("-ancf_quadrature_bending", "Gauss points per element for the bending energy, 2..8",
@@ -364,8 +369,8 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   if (ancf->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(ancf->nbeams > 0, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetUp: no beams, call AncfAddBeam() first");
   n = 6 * ancf->nnodes;
-  PetscCall(
-      PetscCalloc7(n, &ancf->e, n, &ancf->v, n, &ancf->a, n, &ancf->load, n, &ancf->weight, n, &ancf->steady, n, &ancf->rest));
+  PetscCall(PetscCalloc7(n + AncfDaeRoom(ancf), &ancf->e, n + AncfDaeRoom(ancf), &ancf->v, n, &ancf->a, n, &ancf->load, n,
+                         &ancf->weight, n, &ancf->steady, n, &ancf->rest));
   PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * ancf->nnodes, &ancf->mass));
   for (PetscInt k = 0; k < ancf->nsupports; k++) {
     const PetscReal *v = ancf->beams[ancf->supports[k].beam].spec.velocity;
@@ -384,7 +389,8 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   PetscCall(AncfSetUpDamping(ancf));
   PetscCall(AncfSetUpWeight(ancf));
   PetscCall(AncfMassFactor(ancf));
-  if (!ancf->njoints && ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES && !ancf->exposed)
+  if (!ancf->njoints && !AncfDaeRoom(ancf) && ancf->nnodes > 2 * ancf->groupnodes && ancf->nbeams > 2 * ANCF_LANES &&
+      !ancf->exposed)
     PetscCall(AncfGroupSetUp(ancf));
   else
     PetscCall(AncfTSSetUp(ancf));
@@ -433,8 +439,8 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
                                        (double)m->spec.pretension, (double)m->spec.curvature, (double)m->spec.normal[0],
                                        (double)m->spec.normal[1], (double)m->spec.normal[2]));
   }
-  if (ancf->njoints)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "joints %" PetscInt_FMT ", by elimination of coordinates\n", ancf->njoints));
+  if (ancf->njoints) PetscCall(PetscViewerASCIIPrintf(viewer, "joints %" PetscInt_FMT "\n", ancf->njoints));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "constraints: %s\n", AncfConstraintTypes[ancf->constraints]));
   if (ancf->nbeams > 10) PetscCall(PetscViewerASCIIPrintf(viewer, "and %" PetscInt_FMT " more beams\n", ancf->nbeams - 10));
   if (ancf->setup) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "form: %s\n", AncfForms[ancf->form]));
@@ -457,6 +463,7 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(AncfGroupDestroy(a));
   PetscCall(AncfTSDestroy(a));
   PetscCall(AncfJointDestroy(a));
+  PetscCall(AncfDaeDestroy(a));
   PetscCall(PetscFree7(a->e, a->v, a->a, a->load, a->weight, a->steady, a->rest));
   PetscCall(PetscFree2(a->fixed, a->mass));
   PetscCall(PetscFree(a->loadend));

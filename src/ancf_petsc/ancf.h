@@ -18,6 +18,8 @@ typedef struct _p_Ancf *Ancf;
 
 /* Strain measures: PAPER eps = (r'.r'-1)/2, kappa = |r' x r''|/|r'|^3; ENGINEERING eps = |r'|-1, kappa = |r' x r''|/|r'|^2. */
 typedef enum { ANCF_STRAIN_PAPER, ANCF_STRAIN_ENGINEERING } AncfStrain;
+/* Constraints by elimination of coordinates, or with Lagrange multipliers. */
+typedef enum { ANCF_CONSTRAINTS_ELIMINATE, ANCF_CONSTRAINTS_MULTIPLIERS } AncfConstraints;
 
 /* What a beam end may do. Free: all 6 coordinates; pin: position fixed; clamp: position and gradient fixed. */
 typedef enum { ANCF_END_FREE, ANCF_END_PIN, ANCF_END_CLAMP } AncfEnd;
@@ -101,6 +103,17 @@ FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
   26 and 27.
 */
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
+/*
+  How supports and joints are kept, before AncfSetUp(); multipliers: a differential-algebraic equation, with the TS types alpha2,
+  bdf and beuler. constraints: eliminate (default) or multipliers. Source: the paper, Sect. 2.3.
+*/
+FROND_EXTERN PetscErrorCode AncfSetConstraints(Ancf ancf, AncfConstraints constraints);
+/*
+  Largest violation of supports and joints now: round-off of eliminated ones; of multipliers Newton's tolerance in positions
+  (alpha2 at corners: the error of the step) and the error of the step in velocities. Each output may be NULL. position: m, of
+  directions rad. velocity: m/s, rad/s.
+*/
+FROND_EXTERN PetscErrorCode AncfGetConstraintError(Ancf ancf, PetscReal *position, PetscReal *velocity);
 /* Gauss points per element, before AncfSetUp(). axial: for the axial energy, 1 to 8. bending: for the bending energy, 2 to 8. */
 FROND_EXTERN PetscErrorCode AncfSetQuadrature(Ancf ancf, PetscInt axial, PetscInt bending);
 /*

@@ -39,6 +39,7 @@ PetscErrorCode AncfWorstNode(Ancf ancf, SNES snes, PetscInt *node, PetscReal *si
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
   if (!F) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetLocalSize(F, &n));
+  n -= ancf->nmult; /* a constraint that fails shows in its node */
   bs = n / ancf->nnodes;
   PetscCall(VecGetArrayRead(F, &f));
   for (PetscInt i = 0; i < n; i++) {
@@ -125,8 +126,13 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   PetscCall(TSSetTime(ancf->ts, t)); /* sums of steps may be off by round-off */
   PetscCall(TSGetTimeStep(ancf->ts, &ancf->step));
   PetscCall(AncfTSPull(ancf));
-  if (ancf->njoints) PetscCall(AncfJointSync(ancf, PETSC_FALSE, NULL));
-  PetscCall(AncfMoveNodes(ancf, t));
+  if (ancf->nmult) {
+    PetscCall(AncfDaePost(ancf));
+    AncfMove(ancf, t);
+  } else {
+    if (ancf->njoints) PetscCall(AncfJointSync(ancf, PETSC_FALSE, NULL));
+    PetscCall(AncfMoveNodes(ancf, t));
+  }
   ierr = AncfCheckFinite(ancf, "position", ancf->e, t);
   if (!ierr) ierr = AncfCheckFinite(ancf, "velocity", ancf->v, t);
   if (!ierr) ierr = AncfCheckPlane(ancf, ancf->e, t);

@@ -27,13 +27,13 @@ PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f)
   PetscFunctionBegin;
   PetscCall(TSAlpha2GetParams(ancf->ts, &am, &af, &gamma, &beta));
   s = am == 1 && af == 1 && gamma == 1 && beta == 0.5 ? 0 : am;
-  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) f[i] = a[i] - s * ancf->history[i];
+  for (PetscInt i = 0; i < 6 * ancf->nnodes + ancf->nmult; i++) f[i] = a[i] - s * ancf->history[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode AncfAlphaSetUp(Ancf ancf)
 {
-  const PetscInt n = 6 * ancf->nnodes;
+  const PetscInt n = 6 * ancf->nnodes + ancf->nmult;
 
   PetscFunctionBegin;
   if (!ancf->history) PetscCall(PetscCalloc3(n, &ancf->history, n, &ancf->eprev, n, &ancf->vprev));
@@ -47,7 +47,7 @@ PetscErrorCode AncfAlphaSetUp(Ancf ancf)
 /* Where the trivial step begins, see above, and its length. */
 static PetscErrorCode AncfAlphaPlace(Ancf ancf, PetscReal dt)
 {
-  const PetscInt n = 6 * ancf->nnodes;
+  const PetscInt n = 6 * ancf->nnodes + ancf->nmult;
 
   PetscFunctionBegin;
   if (ancf->exact) {
@@ -80,7 +80,7 @@ PetscErrorCode AncfTSCounts(Ancf ancf, PetscInt n[3])
 /* Makes TSALPHA2 continue from (t, e, v) with the acceleration ancf->history and a previous step of length dt. */
 PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt)
 {
-  const PetscInt n = 6 * ancf->nnodes;
+  const PetscInt n = 6 * ancf->nnodes + ancf->nmult;
   PetscReal *keep, rtol, stol, abstol, am, af, gamma, beta;
   PetscInt before[3], after[3], maxit, maxf;
   TSConvergedReason reason;
@@ -117,8 +117,8 @@ PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt)
 PetscErrorCode AncfAlphaPreStep(Ancf ancf)
 {
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(ancf->eprev, ancf->e, 6 * ancf->nnodes));
-  PetscCall(PetscArraycpy(ancf->vprev, ancf->v, 6 * ancf->nnodes));
+  PetscCall(PetscArraycpy(ancf->eprev, ancf->e, 6 * ancf->nnodes + ancf->nmult));
+  PetscCall(PetscArraycpy(ancf->vprev, ancf->v, 6 * ancf->nnodes + ancf->nmult));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -61,8 +61,10 @@ static void BatchSpin(const AncfBatch *b, const PetscReal *spin, AncfLanes s[3])
 /* Sections do not spin where a clamp at rest holds them. */
 static PetscBool HasClamp(Ancf ancf, const AncfBeam *m)
 {
+  const unsigned char *fixed = ancf->allfixed ? ancf->allfixed : ancf->fixed;
+
   for (PetscInt j = m->node; j <= m->node + m->spec.elements; j++)
-    if (ancf->fixed[j] & ANCF_FIX_GRADIENT && !(ancf->fixed[j] & ANCF_MOVING)) return PETSC_TRUE;
+    if (fixed[j] & ANCF_FIX_GRADIENT && !(fixed[j] & ANCF_MOVING)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

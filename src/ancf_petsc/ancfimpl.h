@@ -106,7 +106,11 @@ struct _p_Ancf {
   PetscReal *motion, motiontime;  /* e, v, a of moving nodes at that time, nodes x 18; NULL while none moves */
   AncfSupport *supports;
   PetscInt nsupports, maxsupports;
-  unsigned char *fixed; /* per node, ANCF_FIX_* */
+  unsigned char *fixed;                   /* per node, ANCF_FIX_* */
+  AncfConstraints constraints;            /* see ancfdae.c; the next ones are for multipliers */
+  PetscInt nmult, nrows, nheld, *heldrow; /* multipliers with those that fill up blocks; rows; rows and coordinates of supports */
+  unsigned char *nofix, *allfixed;        /* fixed[] of free nodes; the true one while that is in place, else NULL */
+  PetscReal rowscale;                     /* N/m */
   AncfJoint *joints;
   PetscInt njoints, maxjoints;
   PetscInt *jointof, *localof; /* per node: its joint or -1, and its number there; NULL without joints */
@@ -171,6 +175,17 @@ extern void AncfMove(Ancf ancf, PetscReal t);
 extern void AncfMoveStage(Ancf ancf, PetscReal t);
 extern PetscErrorCode AncfMoveNodes(Ancf ancf, PetscReal t);
 
+/* ancfdae.c: constraints with multipliers; nmult = 0 without. */
+extern PetscInt AncfDaeRoom(const Ancf ancf);
+extern PetscErrorCode AncfDaeSetUp(Ancf ancf);
+extern PetscErrorCode AncfDaeDestroy(Ancf ancf);
+extern PetscErrorCode AncfDaeResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
+                                      const PetscReal *lambda, PetscReal *f, PetscInt fstride, PetscReal *g);
+extern PetscErrorCode AncfDaeAssemble(Ancf ancf, const PetscReal *e, const PetscReal *v, PetscInt stride, const PetscReal *lambda,
+                                      PetscReal shift, PetscReal gv, PetscReal diag, Mat J, Mat P);
+extern PetscErrorCode AncfDaeCreateMatrix(Ancf ancf, PetscInt bs, PC pc, Mat *J);
+extern PetscErrorCode AncfDaePost(Ancf ancf);
+
 /* ancfjoint.c */
 extern PetscErrorCode AncfJointSetUp(Ancf ancf);
 extern PetscErrorCode AncfJointDestroy(Ancf ancf);
@@ -220,6 +235,8 @@ extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
 
 /* ancfresidual.c */
 /* M (a + damping v) + internal damping + Q^e - Q^g - Q^a, the forces of joints handed on to free coordinates; identity rows. */
+extern PetscErrorCode AncfFreeResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
+                                       PetscReal *f, PetscInt fstride); /* the same without any constraint */
 extern PetscErrorCode AncfMotionResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
                                          PetscReal *f, PetscInt fstride);
 

@@ -200,7 +200,7 @@ PetscErrorCode AncfAssembleIdentity(Ancf ancf, PetscReal diag, Mat P)
     s->identity = PETSC_TRUE;
   } else {
     PetscCall(MatZeroEntries(P));
-    for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) PetscCall(MatSetValue(P, i, i, diag, INSERT_VALUES));
+    for (PetscInt i = 0; i < 6 * ancf->nnodes + ancf->nmult; i++) PetscCall(MatSetValue(P, i, i, diag, INSERT_VALUES));
   }
   PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
@@ -479,6 +479,10 @@ PetscErrorCode AncfCreateMatrix(Ancf ancf, PetscInt bs, PC pc, PetscBool choose,
   char prefix[256];
 
   PetscFunctionBegin;
+  if (ancf->nmult && choose) {
+    PetscCall(AncfDaeCreateMatrix(ancf, bs, pc, J));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (ancf->njoints) {
     PetscCall(AncfNetworkCreate(ancf, bs, pc, J));
     PetscFunctionReturn(PETSC_SUCCESS);

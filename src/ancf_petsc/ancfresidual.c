@@ -167,6 +167,18 @@ PetscErrorCode AncfSupportForces(Ancf ancf, PetscReal *f, PetscBool supports)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfFreeResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
+                                PetscReal *f, PetscInt fstride)
+{
+  PetscInt mstride;
+  const PetscReal *m = AncfDamped(ancf, v, a, stride, &mstride);
+
+  PetscFunctionBegin;
+  PetscCall(AncfResidual(ancf, e, stride, m, mstride, f, fstride));
+  AncfAddViscous(ancf, e, v, stride, f, fstride, NULL);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfMotionResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
                                   PetscReal *f, PetscInt fstride)
 {

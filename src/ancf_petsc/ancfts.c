@@ -44,6 +44,8 @@ static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Ve
   PetscCall(VecGetArrayWrite(F, &f));
   if (ancf->priming)
     PetscCall(AncfAlphaFunction(ancf, a, f));
+  else if (ancf->nmult)
+    PetscCall(AncfDaeResidual(ancf, u, v, a, 6, u + 6 * ancf->nnodes, f, 6, f + 6 * ancf->nnodes));
   else
     PetscCall(AncfMotionResidual(ancf, u, v, a, 6, f, 6));
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -66,6 +68,9 @@ static PetscErrorCode AncfI2Jacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, Pe
   PetscCall(VecGetArrayRead(V, &v));
   if (((Ancf)ctx)->priming)
     PetscCall(AncfAssembleIdentity((Ancf)ctx, shiftA, P));
+  else if (((Ancf)ctx)->nmult)
+    PetscCall(AncfDaeAssemble((Ancf)ctx, u, v, 6, u + 6 * ((Ancf)ctx)->nnodes, shiftA + ((Ancf)ctx)->damping * shiftV, shiftV,
+                              shiftA, J, P));
   else
     PetscCall(AncfAssemble((Ancf)ctx, u, v, 6, shiftA + ((Ancf)ctx)->damping * shiftV, shiftV, shiftA, J, P));
   PetscCall(VecRestoreArrayRead(V, &v));
@@ -87,7 +92,10 @@ static PetscErrorCode AncfIFunction(TS ts, PetscReal t, Vec Y, Vec Ydot, Vec F, 
   PetscCall(VecGetArrayRead(Y, &y));
   PetscCall(VecGetArrayRead(Ydot, &yd));
   PetscCall(VecGetArrayWrite(F, &f));
-  PetscCall(AncfMotionResidual(ancf, y, y + 6, yd + 6, 12, f + 6, 12));
+  if (ancf->nmult)
+    PetscCall(AncfDaeResidual(ancf, y, y + 6, yd + 6, 12, y + 12 * ancf->nnodes, f + 6, 12, f + 12 * ancf->nnodes));
+  else
+    PetscCall(AncfMotionResidual(ancf, y, y + 6, yd + 6, 12, f + 6, 12));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 12 * j; c < 12 * j + 6; c++) f[c] = yd[c] - y[c + 6];
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -105,7 +113,11 @@ static PetscErrorCode AncfIJacobian(TS ts, PetscReal t, Vec Y, Vec Ydot, PetscRe
   (void)t;
   (void)Ydot;
   PetscCall(VecGetArrayRead(Y, &y));
-  PetscCall(AncfAssemble((Ancf)ctx, y, y + 6, 12, shift + ((Ancf)ctx)->damping, 1, shift, J, P));
+  if (((Ancf)ctx)->nmult)
+    PetscCall(
+        AncfDaeAssemble((Ancf)ctx, y, y + 6, 12, y + 12 * ((Ancf)ctx)->nnodes, shift + ((Ancf)ctx)->damping, 1, shift, J, P));
+  else
+    PetscCall(AncfAssemble((Ancf)ctx, y, y + 6, 12, shift + ((Ancf)ctx)->damping, 1, shift, J, P));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -262,7 +274,11 @@ static PetscErrorCode AncfPostStep(TS ts)
   PetscCall(TSGetApplicationContext(ts, &ancf));
   if (ancf->form == ANCF_FORM_SECOND) PetscCall(AncfAlphaPostStep(ancf));
   for (PetscInt i = 0; i < 6 * ancf->nnodes && ancf->stage; i++) ancf->impulse[i] += ancf->stagedt * ancf->stage[i];
-  if (ancf->njoints) PetscCall(AncfPostJoints(ancf));
+  if (ancf->nmult) {
+    PetscCall(AncfTSPull(ancf));
+    PetscCall(AncfDaePost(ancf));
+  } else if (ancf->njoints)
+    PetscCall(AncfPostJoints(ancf));
   PetscCall(TSGetTimeStep(ts, &dt));
   PetscCall(TSGetTime(ts, &t));
   PetscCall(TSGetMaxTime(ts, &tmax));
@@ -462,6 +478,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(TSSetPostStep(ancf->ts, AncfPostStep));
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
+  PetscCall(AncfDaeSetUp(ancf));
   PetscCheck(ancf->damping == 0 || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
              "-ancf_damping %g needs another -ancf_ts_type than basicsymplectic, which takes no velocities",
              (double)ancf->damping);
@@ -479,8 +496,8 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   if (ancf->form == ANCF_FORM_SECOND) {
-    PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->e, &ancf->U));
-    PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n, ancf->v, &ancf->V));
+    PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n + ancf->nmult, ancf->e, &ancf->U));
+    PetscCall(VecCreateSeqWithArray(ancf->comm, 6, n + ancf->nmult, ancf->v, &ancf->V));
     PetscCall(AncfCreateMatrix(ancf, 6, pc, PETSC_TRUE, &ancf->J));
     PetscCall(TSSetI2Function(ancf->ts, NULL, AncfI2Function, ancf));
     PetscCall(TSSetI2Jacobian(ancf->ts, ancf->J, ancf->J, AncfI2Jacobian, ancf));
@@ -488,10 +505,11 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
     PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
     PetscCall(AncfAlphaSetUp(ancf));
   } else {
-    PetscCall(VecCreateSeq(ancf->comm, 2 * n, &ancf->U));
+    PetscCall(VecCreateSeq(ancf->comm, 2 * n + ancf->nmult, &ancf->U));
+    PetscCall(VecZeroEntries(ancf->U));
     if (ancf->form == ANCF_FORM_FIRST) {
       PetscCall(AncfCreateMatrix(ancf, 12, pc, PETSC_TRUE, &ancf->J));
-      PetscCall(TSSetEquationType(ancf->ts, TS_EQ_ODE_IMPLICIT));
+      PetscCall(TSSetEquationType(ancf->ts, ancf->nmult ? TS_EQ_DAE_IMPLICIT_INDEX3 : TS_EQ_ODE_IMPLICIT));
       PetscCall(TSSetIFunction(ancf->ts, NULL, AncfIFunction, ancf));
       PetscCall(TSSetIJacobian(ancf->ts, ancf->J, ancf->J, AncfIJacobian, ancf));
     } else {
@@ -530,6 +548,10 @@ PetscErrorCode AncfTSPush(Ancf ancf)
   ancf->restart = PETSC_TRUE;
   ancf->given = PETSC_FALSE;
   if (ancf->njoints) PetscCall(AncfJointSync(ancf, PETSC_TRUE, NULL));
+  if (ancf->nmult && ancf->history) { /* the rates of multipliers, which no equation reads */
+    PetscCall(PetscArrayzero(ancf->v + 6 * ancf->nnodes, ancf->nmult));
+    PetscCall(PetscArrayzero(ancf->history + 6 * ancf->nnodes, ancf->nmult));
+  }
   if (ancf->form == ANCF_FORM_SECOND)
     PetscCall(AncfTSTouch(ancf));
   else
@@ -542,13 +564,13 @@ PetscErrorCode AncfTSCopy(Ancf ancf)
   PetscScalar *y;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(ancf->U, &y));
+  PetscCall(VecGetArray(ancf->U, &y));
   for (PetscInt j = 0; j < ancf->nnodes; j++)
     for (PetscInt c = 0; c < 6; c++) {
       y[12 * j + c] = ancf->e[6 * j + c];
       y[12 * j + 6 + c] = ancf->v[6 * j + c];
     }
-  PetscCall(VecRestoreArrayWrite(ancf->U, &y));
+  PetscCall(VecRestoreArray(ancf->U, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
