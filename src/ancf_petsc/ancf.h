@@ -105,9 +105,9 @@ FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
 /*
   How supports and joints are kept, before AncfSetUp(); multipliers: a differential-algebraic equation, with the TS types alpha2,
-  bdf and beuler. constraints: eliminate (default) or multipliers. Source: the paper, Sect. 2.3.
+  bdf and beuler. type: eliminate (default) or multipliers. Source: the paper, Sect. 2.3.
 */
-FROND_EXTERN PetscErrorCode AncfSetConstraints(Ancf ancf, AncfConstraints constraints);
+FROND_EXTERN PetscErrorCode AncfSetConstraints(Ancf ancf, AncfConstraints type);
 /*
   Largest violation of supports and joints now: round-off of eliminated ones; of multipliers Newton's tolerance in positions
   (alpha2 at corners: the error of the step) and the error of the step in velocities. Each output may be NULL. position: m, of

@@ -268,13 +268,13 @@ PetscErrorCode AncfDaePost(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfSetConstraints(Ancf ancf, AncfConstraints constraints)
+PetscErrorCode AncfSetConstraints(Ancf ancf, AncfConstraints type)
 {
   PetscFunctionBegin;
   PetscCheck(!ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "-ancf_constraints cannot change after AncfSetUp()");
-  PetscCheck(constraints == ANCF_CONSTRAINTS_ELIMINATE || constraints == ANCF_CONSTRAINTS_MULTIPLIERS, ancf->comm,
-             PETSC_ERR_ARG_OUTOFRANGE, "-ancf_constraints %d must be eliminate or multipliers", (int)constraints);
-  ancf->constraints = constraints;
+  PetscCheck(type == ANCF_CONSTRAINTS_ELIMINATE || type == ANCF_CONSTRAINTS_MULTIPLIERS, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "-ancf_constraints %d must be eliminate or multipliers", (int)type);
+  ancf->constraints = type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

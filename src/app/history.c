@@ -64,7 +64,7 @@ static PetscErrorCode put3(AppHistory h, const char stem[], const char unit[], c
 static PetscErrorCode put_beams(AppHistory h, App *app)
 {
   const char *energy = app->dim == 2 ? "J/m" : "J";
-  PetscReal kinetic, elastic, potential, dissipation, r[3], v[3], reaction[3], l;
+  PetscReal kinetic, elastic, potential, dissipation, r[3], v[3], reaction[3], l, off[2];
   char stem[96];
   PetscInt steps, newton, linear;
 
@@ -87,6 +87,9 @@ static PetscErrorCode put_beams(AppHistory h, App *app)
   PetscCall(put(h, "beams_dissipation", app->dim == 2 ? "W/m" : "W", "power that damping takes from the beams", dissipation));
   PetscCall(AncfGetReaction(app->ancf, reaction));
   PetscCall(put3(h, "beams_support_", app->dim == 2 ? "N/m" : "N", "force of the supports on all beams", reaction));
+  PetscCall(AncfGetConstraintError(app->ancf, &off[0], &off[1]));
+  PetscCall(put(h, "beams_constraint_position", "m", "largest violation of supports and joints (directions: rad)", off[0]));
+  PetscCall(put(h, "beams_constraint_velocity", "m/s", "the same of velocities (directions: rad/s)", off[1]));
   PetscCall(AncfGetCounts(app->ancf, &steps, &newton, &linear));
   PetscCall(put(h, "beams_steps", "1", "time steps of the beams since the start", (PetscReal)steps));
   PetscCall(put(h, "beams_newton", "1", "Newton iterations of the beams since the start", (PetscReal)newton));
