@@ -11,6 +11,7 @@ function(frond_app_test name label)
 endfunction()
 
 frond_app_test(app_badinput unit)
+frond_app_test(app_mesh unit)
 frond_app_test(app_run unit)
 frond_app_test(app_help unit)
 frond_app_test(app_probes unit)

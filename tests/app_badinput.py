@@ -35,6 +35,8 @@ bad("-beam_rod_pretension nan", "pretension")
 bad("-beam_rod_inner 0.06", "inner = 0.06", "0.06\\)")
 bad("-beam_rod_width 0.1", "width = 0.1", "round")
 
+bad("-ancf_ts_type irk", "ts_type irk", "cannot integrate beams", "alpha2")
+
 # Time.
 bad("-ancf_substeps 0", "substeps", "0", "1")
 bad("-time_end 0", "time_end", "positive")

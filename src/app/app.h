@@ -53,6 +53,7 @@ typedef enum { PRESSURE_HYDROSTATIC, PRESSURE_ZERO } ScenePressure;
 typedef struct {
   char name[APP_NAME_LEN];
   AncfBeamSpec spec;
+  char mesh[PETSC_MAX_PATH_LEN], group[PETSC_MAX_PATH_LEN]; /* Gmsh file and physical name of its axis; empty: none, the name */
 } SceneBeam;
 typedef struct {
   char name[APP_NAME_LEN];
@@ -232,6 +233,15 @@ PetscErrorCode AppBuildShortRange(App *app);
 PetscErrorCode AppBuildShortBeams(App *app);
 PetscErrorCode AppCheckOverlap(App *app);
 PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v[3]);
+
+/* scenemesh.c: beams from a Gmsh mesh, the last file being kept; the chain of a group makes start, end, elements, curvature. */
+typedef struct {
+  char file[PETSC_MAX_PATH_LEN];
+  DM dm;
+  const char *scene; /* file of the scene, or NULL */
+} AppMesh;
+PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam);
+PetscErrorCode AppMeshDestroy(AppMesh *mesh);
 
 /* scenelink.c: links between nodes of beams. */
 PetscErrorCode AppSceneReadLinks(AppScene *scene);

@@ -160,15 +160,16 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode read_beam(const char prefix[], const char title[], AncfBeamSpec *spec, PetscBool set[2])
+static PetscErrorCode read_beam(const char prefix[], const char title[], SceneBeam *beam, PetscBool set[5])
 {
+  AncfBeamSpec *spec = &beam->spec;
   PetscInt end0 = spec->end0, end1 = spec->end1;
   PetscBool stiff[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
   PetscReal *derived[3] = {&spec->EA, &spec->EI, &spec->rhoA};
   const AppOpt opt[] = {
       {OPT_VEC, "start", "First end of the axis, m (needed)", spec->start, NULL, &set[0]},
       {OPT_VEC, "end", "Last end of the axis, m (needed)", spec->end, NULL, &set[1]},
-      {OPT_INT, "elements", "Number of ANCF elements", &spec->elements, NULL, NULL},
+      {OPT_INT, "elements", "Number of ANCF elements", &spec->elements, NULL, &set[2]},
       {OPT_REAL, "diameter", "Diameter of the circular section; in 2D the thickness of a plate of unit depth, m (needed)",
        &spec->diameter, NULL, NULL},
       {OPT_REAL, "density", "Density of the material, kg/m^3 (needed)", &spec->density, NULL, NULL},
@@ -185,10 +186,12 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], AncfBea
        NULL},
       {OPT_REAL, "pretension", "Axial force in the initial shape, N; 2D: N/m", &spec->pretension, NULL, NULL},
       {OPT_REAL, "curvature", "Curvature of the axis at first, an arc from start to end without stress, 1/m", &spec->curvature,
-       NULL, NULL},
+       NULL, &set[3]},
       {OPT_VEC, "normal", "Axis that a curved beam turns about; the beam moves in the plane across, other motion is refused",
-       spec->normal, NULL, NULL},
+       spec->normal, NULL, &set[4]},
       {OPT_VEC, "velocity", "Initial velocity, m/s", spec->velocity, NULL, NULL},
+      {OPT_STRING, "mesh", "Gmsh file whose lines give start, end, elements, curvature and normal", beam->mesh, NULL, NULL},
+      {OPT_STRING, "group", "Physical name of the lines in the mesh (default: the beam's name)", beam->group, NULL, NULL},
       {OPT_CHOICE, "end0", "Support of the first end", &end0, ends, NULL},
       {OPT_CHOICE, "end1", "Support of the last end", &end1, ends, NULL},
   };
@@ -244,25 +247,42 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode read_beams(AppScene *s, const AppNames *names, PetscBool help)
+static PetscErrorCode read_beams(AppScene *s, const AppNames *names, const char file[], PetscBool help)
 {
-  AncfBeamSpec all;
-  PetscBool allset[2] = {PETSC_FALSE, PETSC_FALSE};
+  SceneBeam all;
+  AppMesh mesh = {"", NULL, file};
+  PetscBool allset[5] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
   char prefix[128], title[128];
 
   PetscFunctionBegin;
-  PetscCall(AncfBeamSpecInit(&all));
+  PetscCall(PetscMemzero(&all, sizeof(all)));
+  PetscCall(AncfBeamSpecInit(&all.spec));
   if (names->n || help) PetscCall(read_beam("beam_", "Beams: the same for all; -beam_<name>_... for one", &all, allset));
   for (PetscInt i = 0; i < names->n; i++) {
-    PetscBool set[2] = {allset[0], allset[1]};
-    s->beams[i].spec = all;
-    PetscCall(PetscStrncpy(s->beams[i].name, names->name[i], APP_NAME_LEN));
+    PetscBool set[5];
+    SceneBeam *beam = &s->beams[i];
+
+    *beam = all;
+    PetscCall(PetscArraycpy(set, allset, 5));
+    PetscCall(PetscStrncpy(beam->name, names->name[i], APP_NAME_LEN));
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "beam_%s_", names->name[i]));
     PetscCall(PetscSNPrintf(title, sizeof(title), "Beam '%s'", names->name[i]));
-    PetscCall(read_beam(prefix, title, &s->beams[i].spec, set));
+    PetscCall(read_beam(prefix, title, beam, set));
+    if (beam->mesh[0]) {
+      const char *const keys[] = {"start", "end", "elements", "curvature", "normal"};
+
+      for (int k = 0; k < 5; k++)
+        PetscCheck(!set[k], PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP, "beam '%s': %s is given but comes from its mesh '%s'",
+                   beam->name, keys[k], beam->mesh);
+      if (!help) PetscCall(AppMeshBeam(&mesh, beam));
+      continue;
+    }
+    PetscCheck(!beam->group[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s': group '%s' needs a mesh", beam->name,
+               beam->group);
     PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s' needs %s%s", names->name[i], prefix,
                set[0] ? "end" : "start");
   }
+  PetscCall(AppMeshDestroy(&mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -300,7 +320,7 @@ static PetscErrorCode read_bodies(AppScene *s, const AppNames *names, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode read_structures(AppScene *s)
+static PetscErrorCode read_structures(AppScene *s, const char file[])
 {
   AppNames beams = {0, NULL}, bodies = {0, NULL};
   PetscInt trunks;
@@ -316,7 +336,7 @@ static PetscErrorCode read_structures(AppScene *s)
   s->nbeams = beams.n;
   s->nbodies = bodies.n;
   PetscCall(PetscCalloc1(beams.n, &s->beams));
-  PetscCall(read_beams(s, &beams, help));
+  PetscCall(read_beams(s, &beams, file, help));
   PetscCall(AppSceneReadLumped(s, &trunks));
   PetscCall(PetscCalloc1((size_t)(bodies.n + trunks), &s->bodies));
   PetscCall(read_bodies(s, &bodies, help));
@@ -371,7 +391,7 @@ PetscErrorCode AppSceneRead(AppScene *s, const char file[])
   for (PetscInt i = 0; i <= FIELD_GROUP; i++) s->field[i] = PETSC_TRUE;
   PetscCall(default_name(file, s->name));
   PetscCall(read_domain(s, &set));
-  PetscCall(read_structures(s));
+  PetscCall(read_structures(s, file));
   PetscCall(read_run(s, &set));
   PetscCall(PetscOptionsHasHelp(NULL, &help));
   if (!help) PetscCall(check_given(s, &set));
