@@ -95,7 +95,7 @@ frond.write("wet.yaml", apptest.SCENE.replace("end: [0.2, 0.2, 0.2]", "end: [0.1
             .replace("motion: fixed", "motion: free").replace("position: [0.31, 0.2, 0.2]", "position: [0.25, 0.2, 0.2]")
             .replace("density: 1000\n  position", "density: 2500\n  position").replace("scene_name: small", "scene_name: wet")
             + "links: hook\nlink_hook: {type: rigid, nodes: rod.end, body: ball}\nhistory_every: 0\nprogress_every: 0\n")
-for how in ([], ["-couple_iterations", "6"]):
+for how in ([], ["-couple_iterations", "6"], ["-couple_loads", "linear", "-couple_iterations", "6"]):
     folder = "out_wet%d" % len(how)
     frond.runs("run", "wet.yaml", *how, "-output_dir", folder, "-checkpoint_every", "0.005")
     wet = history(folder)

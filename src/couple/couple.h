@@ -187,7 +187,7 @@ FROND_EXTERN PetscErrorCode CoupleSetTransfer(Couple couple, CoupleTransferType 
 /*
   How a step's loads go on over it. constant (default): the fluid's force at the middle of the step. linear: with that mean, and
   with the slope from the force of the last step to this one's (each iterate's, when iterated). With marker forces only, see
-  CoupleSetTransfer(). Source: coupleloads.c; orders measured in docs/substeps.md.
+  CoupleSetTransfer(); constant with CoupleSetAttach(). Source: coupleloads.c; orders measured in docs/substeps.md.
 */
 typedef enum { COUPLE_LOADS_CONSTANT, COUPLE_LOADS_LINEAR } CoupleLoads;
 /* Names of CoupleLoads. */

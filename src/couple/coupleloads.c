@@ -66,7 +66,8 @@ PetscErrorCode CoupleLoadsChange(Couple c)
   const PetscReal g = 2.0 * c->dt / (c->dt + c->dtlast[0]);
 
   PetscFunctionBegin;
-  if (c->loads != COUPLE_LOADS_LINEAR || c->dtlast[0] <= 0.0) PetscFunctionReturn(PETSC_SUCCESS);
+  /* attached structures go back to the start of the step within it, which loads that vary do not survive */
+  if (c->loads != COUPLE_LOADS_LINEAR || c->attach || c->dtlast[0] <= 0.0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < c->n; i++) {
     const CoupleSlot *s = &c->slot[i];
     if (s->surface->held || !s->surface->ops.changeforces) continue;
