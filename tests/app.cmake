@@ -20,6 +20,7 @@ frond_app_test(app_checkpoint unit)
 frond_app_test(app_motion unit)
 frond_app_test(app_study validation)
 frond_app_test(app_links unit)
+frond_app_test(app_audit unit)
 frond_app_test(app_faults unit)
 add_test(NAME app_kills COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
   ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/app_faults.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_kills ${PROJECT_SOURCE_DIR} 50)

@@ -51,6 +51,7 @@ sph:
 output_fields: [velocity, density, pressure, group, acceleration]
 output_every: 1000
 history_every: 0
+audit: false
 progress_every: 0
 """
 frond.write("all.yaml", SCENE)
@@ -143,19 +144,19 @@ def cut(name, args, steps=200, threads="1", scene="all.yaml", dt=1e-4):
 
 
 def variants():
-    cut("plain", [], threads="2")
+    cut("plain", ["-audit", "true"], threads="2")
     cut("variable", ["variable"], steps=600)
     cut("verlet", ["-sph_integrator", "verlet", "-sph_reinit", "none"])
     cut("symplectic", ["-sph_integrator", "symplectic"], steps=100)
     cut("iterated", ["-couple_iterations", "4"], steps=60)
     cut("linear", ["-couple_loads", "linear"], steps=60)
     cut("linear_iterated", ["-couple_loads", "linear", "-couple_iterations", "4"], steps=40)
-    cut("double", ["-sph_precision", "double", "-sph_wall", "bce", "-sph_kernel", "wendland"], steps=60)
+    cut("double", ["-audit", "true", "-sph_precision", "double", "-sph_wall", "bce", "-sph_kernel", "wendland"], steps=60)
     cut("substeps", ["-ancf_substeps", "3", "-rigid_substeps", "2"], steps=60)
     for kind in ("beuler", "cn", "euler", "basicsymplectic"):
         extra = ["-ancf_ts_basicsymplectic_type", "2"] if kind == "basicsymplectic" else []
         cut(kind, ["-ancf_ts_type", kind, *extra, "-ancf_substeps", "4"], steps=40)
-    cut("dry", [], scene="dry.yaml", threads="2")
+    cut("dry", ["-audit", "true"], scene="dry.yaml", threads="2")
     # Newton's method fails with 2 iterations: steps are halved
     cut("dry_halved", ["-ancf_snes_max_it", "2", "-beam_rod_end0", "pin", "-beam_young", "2e7", "-time_step", "5e-3"], steps=40, scene="dry.yaml", dt=5e-3)
 

@@ -143,16 +143,21 @@ typedef struct {
   char restart[PETSC_MAX_PATH_LEN]; /* checkpoint to go on from, or a folder of them; empty for none */
   PetscBool restartchanged;
   PetscInt faultfield, faultmarker, faultstep; /* -fault_nan; faultstep < 0: none */
+  PetscReal faultvalue;
+  PetscBool audit;
+  PetscReal auditmomentum, auditenergy; /* relative residuals that bring a warning; -1: none */
 } AppScene;
 PetscErrorCode AppSceneRead(AppScene *scene, const char file[]);
 PetscErrorCode AppSceneCheck(const AppScene *scene, PetscInt dim);
 PetscErrorCode AppSceneDestroy(AppScene *scene);
 
 /* appbuild.c: the solver objects of a scene. */
+typedef enum { SURFACE_WALL, SURFACE_BEAM, SURFACE_BODY, SURFACE_KINDS } AppSurfaceKind;
 typedef struct {
   char name[APP_NAME_LEN + 8];
   CoupleSurface surface;
   PetscInt markers, group; /* group: of its markers in the fluid */
+  AppSurfaceKind kind;
 } AppSurface;
 typedef struct {
   AppScene scene;
@@ -335,8 +340,26 @@ typedef struct {
 } HistoryWorst;
 PetscErrorCode AppHistoryWorst(AppHistory history, HistoryWorst *worst);
 
+/*
+  appaudit.c: balances of mass, momentum, energy. All reals: a checkpoint holds it as one array. Integrals are sums of trapezoids
+  over the rows of the history.
+*/
+enum { AUDIT_MASS, AUDIT_MOMENTUM, AUDIT_FLUID, AUDIT_BEAMS, AUDIT_BODIES, AUDIT_TERMS };
+enum { AUDIT_HEAT, AUDIT_BODY, AUDIT_DAMPING, AUDIT_TORQUE, AUDIT_INTEGRALS = AUDIT_TORQUE + 3 };
+typedef struct {
+  PetscReal rows, t, left;                                      /* rows so far; s; markers that left */
+  PetscReal rate[AUDIT_INTEGRALS], integral[AUDIT_INTEGRALS];   /* W, J; torque of the body force N m, N m s */
+  PetscReal mass, energy[AUDIT_TERMS], angular[3];              /* at the first row: kg, J, kg m^2/s */
+  PetscReal pressure, L[3], work[SURFACE_KINDS];                /* W; kg m^2/s now; J of the fluid on the surfaces */
+  PetscReal residual[AUDIT_TERMS], scale[AUDIT_TERMS], turn[3]; /* kg, kg m/s, J, J, J; the largest term; kg m^2/s */
+  PetscReal worst[AUDIT_TERMS], warned[AUDIT_TERMS];            /* largest residual over scale; whether it was said */
+} AppAudit;
+PetscErrorCode AppAuditUpdate(App *app, AppAudit *audit);
+
 /* sceneprobe.c, appgrid.c: grids in the frames, probes in the history. */
 typedef PetscErrorCode (*AppPut)(AppHistory h, const char name[], const char unit[], const char description[], PetscReal value);
+PetscErrorCode AppAuditPut(App *app, const AppAudit *audit, AppPut put, AppHistory h);
+PetscErrorCode AppHistoryAudit(AppHistory history, const AppAudit **audit);
 PetscErrorCode AppSceneReadProbes(AppScene *scene);
 PetscErrorCode AppProbesSetUp(App *app);
 PetscErrorCode AppGridsWrite(App *app, int64_t file);

@@ -114,13 +114,14 @@ static PetscErrorCode build_structures(App *app)
 
 /* --- surfaces -------------------------------------------------------------------------------------------------- */
 
-static PetscErrorCode add_surface(App *app, const char name[], CoupleSurface surface)
+static PetscErrorCode add_surface(App *app, AppSurfaceKind kind, const char name[], CoupleSurface surface)
 {
   AppSurface *at = &app->surfaces[app->nsurfaces++];
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(at->name, name, sizeof(at->name)));
   at->surface = surface;
+  at->kind = kind;
   PetscCall(CoupleAddSurface(app->couple, surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -170,7 +171,7 @@ static PetscErrorCode add_walls(App *app)
       PetscCall(AppWallCreateMoving(app, f, name, m, fx, fvolume, fdepth, &surface));
     else
       PetscCall(AppWallCreate(name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
-    PetscCall(add_surface(app, name, surface));
+    PetscCall(add_surface(app, SURFACE_WALL, name, surface));
   }
   PetscCall(PetscFree3(fx, fvolume, fdepth));
   PetscCall(PetscFree(x));
@@ -249,12 +250,12 @@ static PetscErrorCode build_couple(App *app)
   for (PetscInt b = 0; b < s->nbeams; b++) {
     AppDoing(app, "beam '%s'", s->beams[b].name);
     PetscCall(CoupleSurfaceCreateBeam(app->ancf, b, app->dim, dp, support, &surface));
-    PetscCall(add_surface(app, s->beams[b].name, surface));
+    PetscCall(add_surface(app, SURFACE_BEAM, s->beams[b].name, surface));
   }
   for (PetscInt b = 0; b < s->nbodies; b++) {
     AppDoing(app, "body '%s'", s->bodies[b].name);
     PetscCall(CoupleSurfaceCreateRigid(app->rigid, b, app->dim, dp, support, &surface));
-    PetscCall(add_surface(app, s->bodies[b].name, surface));
+    PetscCall(add_surface(app, SURFACE_BODY, s->bodies[b].name, surface));
   }
   AppDoing(app, "%s", "");
   PetscCall(CoupleSetUp(app->couple));

@@ -68,7 +68,7 @@ static PetscErrorCode poke_body(App *app, PetscReal value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The option -fault_nan: before the chosen step one value becomes NaN. */
+/* The option -fault_nan: before the chosen step one value becomes fault_value, NaN by default. */
 PetscErrorCode AppInjectFault(App *app)
 {
   const AppScene *s = &app->scene;
@@ -76,11 +76,11 @@ PetscErrorCode AppInjectFault(App *app)
   PetscFunctionBegin;
   if (s->faultstep < 0 || app->step != s->faultstep) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->faultfield == FAULT_BEAM_X || s->faultfield == FAULT_BEAM_V)
-    PetscCall(poke_beam(app, (PetscReal)NAN));
+    PetscCall(poke_beam(app, s->faultvalue));
   else if (s->faultfield == FAULT_BODY_X || s->faultfield == FAULT_BODY_V)
-    PetscCall(poke_body(app, (PetscReal)NAN));
+    PetscCall(poke_body(app, s->faultvalue));
   else
-    PetscCall(poke_fluid(app, (PetscReal)NAN));
+    PetscCall(poke_fluid(app, s->faultvalue));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

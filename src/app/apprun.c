@@ -290,6 +290,26 @@ static PetscErrorCode print_structures(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest residuals of the energies over their largest terms. */
+static PetscErrorCode print_audit(Run *run)
+{
+  static const char *const names[] = {"", "", "fluid", "beams", "bodies"};
+  const App *app = run->app;
+  const PetscBool there[] = {PETSC_FALSE, PETSC_FALSE, (PetscBool)(app->sph != NULL), (PetscBool)(app->ancf != NULL),
+                             (PetscBool)(app->rigid != NULL)};
+  const AppAudit *a;
+
+  PetscFunctionBegin;
+  if (!app->scene.audit) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AppHistoryAudit(run->history, &a));
+  printf("  energy balance, residual at most:");
+  for (int k = AUDIT_FLUID; k < AUDIT_TERMS; k++)
+    if (there[k])
+      printf(" %s %.2g of %.4g %s", names[k], (double)(a->worst[k]), (double)a->scale[k], app->dim == 2 ? "J/m" : "J");
+  printf("\n");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode print_summary(Run *run)
 {
   App *app = run->app;
@@ -315,6 +335,7 @@ static PetscErrorCode print_summary(Run *run)
            (double)w.forcelost, (double)w.force, (double)w.momentlost, (double)w.moment, (double)w.powerlost, (double)w.power,
            app->dim == 2 ? " (per metre of depth)" : "");
   }
+  PetscCall(print_audit(run));
   printf("results: %s/run.xdmf (%d frames, for ParaView), %s/history.csv, %s/settings.txt\n", app->scene.outdir, (int)frames,
          app->scene.outdir, app->scene.outdir);
   fflush(stdout);

@@ -23,6 +23,7 @@ struct _AppHistory {
   Column *column;
   PetscReal *row, *rows; /* ncols; nrows x ncols */
   HistoryWorst worst;
+  AppAudit audit;
 };
 
 static PetscReal norm3(const PetscReal v[3])
@@ -282,6 +283,7 @@ static PetscErrorCode fill_row(AppHistory h, App *app, PetscReal dt)
   PetscCall(put_bodies(h, app));
   PetscCall(put_links(h, app));
   PetscCall(put_fluid(h, app));
+  PetscCall(AppAuditPut(app, &h->audit, put, h));
   PetscCall(AppProbesPut(app, put, h));
   h->known = PETSC_TRUE;
   for (PetscInt c = 0; c < h->ncols; c++)
@@ -307,6 +309,7 @@ static PetscErrorCode add_row(AppHistory h)
 PetscErrorCode AppHistoryRecord(AppHistory h, App *app, PetscReal dt)
 {
   PetscFunctionBegin;
+  PetscCall(AppAuditUpdate(app, &h->audit));
   PetscCall(fill_row(h, app, dt));
   if (!h->nrows) PetscCall(write_header(h));
   for (PetscInt c = 0; c < h->ncols; c++) {
@@ -391,6 +394,7 @@ PetscErrorCode AppHistoryMoveState(AppHistory h, App *app, FrondState *s)
   FrondMoveInt(s, "run/history_rows", &rows, 1);
   FrondMoveReal(s, "run/history_last", &tlast, 1);
   FrondMoveReal(s, "run/history_worst", (PetscReal *)&worst, sizeof(worst) / sizeof(PetscReal));
+  FrondMoveReal(s, "run/audit", (PetscReal *)&h->audit, sizeof(h->audit) / sizeof(PetscReal));
   if (s->way == FROND_STATE_LOAD) {
     PetscCall(fill_row(h, app, 0)); /* for the columns */
     PetscCall(read_rows(h, rows, tlast));
@@ -425,6 +429,13 @@ PetscErrorCode AppHistoryWorst(AppHistory h, HistoryWorst *worst)
 {
   PetscFunctionBegin;
   *worst = h->worst;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AppHistoryAudit(AppHistory h, const AppAudit **audit)
+{
+  PetscFunctionBegin;
+  *audit = &h->audit;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

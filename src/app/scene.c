@@ -1,5 +1,6 @@
 /* scene.c - the options of a scene: domain, fluid, walls, beams, bodies, run and output. */
 #include "app.h"
+#include <math.h>
 #include <ctype.h>
 #include <string.h>
 
@@ -142,6 +143,13 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
       {OPT_STRING, "fault_nan",
        "For tests: put NaN in field,number,step before that step (x|v|rho of a marker, beam_x|beam_v of a node, body_x|body_v)",
        fault, NULL, NULL},
+      {OPT_REAL, "fault_value", "For tests: the value that fault_nan puts in place of NaN", &s->faultvalue, NULL, NULL},
+      {OPT_BOOL, "audit", "Balances of energy and angular momentum in the history: a sum over pairs for each row", &s->audit,
+       NULL, NULL},
+      {OPT_REAL, "audit_momentum", "Warn when the residual of the momentum exceeds this part of its largest term; -1: never",
+       &s->auditmomentum, NULL, NULL},
+      {OPT_REAL, "audit_energy", "Warn when the residual of an energy exceeds this part of its largest term; -1: never",
+       &s->auditenergy, NULL, NULL},
   };
 
   PetscFunctionBegin;
@@ -156,6 +164,10 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
              "checkpoint_every = %g s: must be >= 0, or -1 for none", (double)s->checkpointevery);
   PetscCheck(s->checkpointkeep >= 1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "checkpoint_keep = %" PetscInt_FMT ": must be at least 1", s->checkpointkeep);
+  PetscCheck(s->auditmomentum > 0 || s->auditmomentum == -1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "audit_momentum = %g: must be > 0, or -1 for never", (double)s->auditmomentum);
+  PetscCheck(s->auditenergy > 0 || s->auditenergy == -1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "audit_energy = %g: must be > 0, or -1 for never", (double)s->auditenergy);
   PetscCall(read_fault(s, fault));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -371,7 +383,7 @@ static PetscErrorCode check_given(const AppScene *s, const SceneSet *set)
   } else {
     PetscCheck(set->dt, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "time_step is needed in a scene without fluid, s");
     PetscCheck(s->dt > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "time_step = %g s must be positive", (double)s->dt);
-    PetscCheck(s->faultstep < 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan needs a fluid");
+    PetscCheck(s->faultstep < 0 || s->faultfield > FAULT_RHO, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan needs a fluid");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -388,6 +400,10 @@ PetscErrorCode AppSceneRead(AppScene *s, const char file[])
   s->progressevery = 1;
   s->checkpointevery = -1;
   s->checkpointkeep = 3;
+  s->faultvalue = (PetscReal)NAN;
+  s->audit = PETSC_TRUE;
+  s->auditmomentum = 1e-3;
+  s->auditenergy = 0.2;
   for (PetscInt i = 0; i <= FIELD_GROUP; i++) s->field[i] = PETSC_TRUE;
   PetscCall(default_name(file, s->name));
   PetscCall(read_domain(s, &set));

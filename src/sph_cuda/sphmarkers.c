@@ -251,12 +251,12 @@ PetscErrorCode SphSetFields(Sph sph, const SphFields *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Specific internal energy of Eq. 7 relative to rho0 (J/kg): integral of p/rho^2 d rho. */
+/* Specific internal energy relative to rho0 (J/kg): integral of p/rho^2 d rho, p of Eq. 7 and the background pressure. */
 static double InternalEnergy(const SphParams *p, double s)
 {
-  const double r = 1.0 + s;
-  if (p->gamma == 1.0) return p->B / p->rho0 * (log1p(s) + 1.0 / r - 1.0);
-  return p->B / p->rho0 * (expm1((p->gamma - 1.0) * log1p(s)) / (p->gamma - 1.0) - s / r);
+  const double r = 1.0 + s, background = p->pb / p->rho0 * s / r;
+  if (p->gamma == 1.0) return background + p->B / p->rho0 * (log1p(s) + 1.0 / r - 1.0);
+  return background + p->B / p->rho0 * (expm1((p->gamma - 1.0) * log1p(s)) / (p->gamma - 1.0) - s / r);
 }
 
 PetscErrorCode SphGetSums(Sph sph, SphSums *out)
