@@ -8,9 +8,9 @@
 
 static SphLink *Find(Sph sph, PetscInt group)
 {
-  for (int k = 0; sph->links && k < sph->links->n; k++)
-    if (sph->links->link[k].group == group) return &sph->links->link[k];
-  return NULL;
+  const struct _SphLinks *l = sph->links;
+
+  return l && group >= 0 && group < l->nof && l->of[group] >= 0 ? &l->link[l->of[group]] : NULL;
 }
 
 PetscBool SphIsLinked(Sph sph, PetscInt group)
@@ -99,6 +99,13 @@ PetscErrorCode SphSetGroupLink(Sph sph, PetscInt group, const SphLinkSpec *spec)
     PetscCall(PetscFree(l->link));
     l->link = more;
   }
+  if (group >= l->nof) {
+    const int nof = 2 * (int)group + 8;
+    PetscCall(PetscRealloc((size_t)nof * sizeof(int), &l->of));
+    for (int k = l->nof; k < nof; k++) l->of[k] = -1;
+    l->nof = nof;
+  }
+  l->of[group] = l->n;
   SphLink *k = &l->link[l->n++];
   k->group = (int)group;
   k->n = (int)n;
@@ -118,6 +125,7 @@ PetscErrorCode SphLinksDestroy(Sph sph)
     PetscCall(PetscFree5(k->x, k->v, k->a, k->f, k->o));
   }
   if (sph->links) PetscCall(PetscFree(sph->links->link));
+  if (sph->links) PetscCall(PetscFree(sph->links->of));
   PetscCall(PetscFree(sph->links));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,6 +22,7 @@ typedef struct {
 struct _SphLinks {
   int n, cap;
   SphLink *link;
+  int *of, nof; /* link of a group (-1: none), for groups up to the last linked one */
 };
 
 /* Section s of a link in `state`. */
