@@ -56,6 +56,11 @@ FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
   in [0, diameter).
 */
 FROND_EXTERN PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner);
+/*
+  Where a beam lies at first. spec: the beam. s: fraction of the length, in [0, 1]. e: 6, position, m, and its gradient, of the
+  line or arc.
+*/
+FROND_EXTERN PetscErrorCode AncfBeamSpecGetPoint(const AncfBeamSpec *spec, PetscReal s, PetscReal e[6]);
 /* Append a beam, before AncfSetUp(). spec: copied. beam: its number, or NULL. */
 FROND_EXTERN PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *beam);
 /*

@@ -209,6 +209,15 @@ void AncfSpecPoint(const AncfBeamSpec *s, PetscReal xi, PetscReal e[6])
   }
 }
 
+PetscErrorCode AncfBeamSpecGetPoint(const AncfBeamSpec *spec, PetscReal s, PetscReal e[6])
+{
+  PetscFunctionBegin;
+  PetscCheck(s >= 0 && s <= 1, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "AncfBeamSpecGetPoint: s = %g must be in [0, 1]",
+             (double)s);
+  AncfSpecPoint(spec, s, e);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfCheckRest(Ancf ancf, const AncfBeamSpec *s)
 {
   PetscReal chord = 0, size = 0, dot = 0;

@@ -54,9 +54,6 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
     PetscCheck(s->beams[b].spec.inner == 0 || app->dim == 3, PETSC_COMM_SELF, PETSC_ERR_SUP,
                "beam_%s_inner = %g m: in 2D a beam is a plate; give EA, EI and rhoA", s->beams[b].name,
                (double)s->beams[b].spec.inner);
-    PetscCheck(!s->fluid || s->beams[b].spec.curvature == 0, PETSC_COMM_SELF, PETSC_ERR_SUP,
-               "beam_%s_curvature = %g 1/m: beams in a fluid must be straight at first", s->beams[b].name,
-               (double)s->beams[b].spec.curvature);
     PetscCall(AncfAddBeam(app->ancf, &s->beams[b].spec, NULL));
     AppDoing(app, "%s", "");
   }

@@ -25,10 +25,50 @@ typedef struct {
   PetscInt bins[3], *start, *list; /* images of bin b: list[start[b]] ... list[start[b + 1] - 1] */
 } Carve;
 
+/*
+  An arc turns by `turn` about the normal, over its chord: about its centre, points of its plane are (sin, -cos)/curvature of the
+  angle from the middle.
+*/
+static PetscBool inside_arc(const AncfBeamSpec *spec, PetscInt dim, const PetscReal x[3])
+{
+  const PetscReal k = spec->curvature, *n = spec->normal, size = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  PetscReal chord = 0, t[3], half, u = 0, w = 0, z = 0, angle, off;
+
+  for (int a = 0; a < 3; a++) {
+    t[a] = spec->end[a] - spec->start[a];
+    chord += t[a] * t[a];
+  }
+  chord = PetscSqrtReal(chord);
+  half = PetscAsinReal(k * chord / 2);
+  for (PetscInt a = 0; a < dim; a++) {
+    const PetscReal d = x[a] - spec->start[a], side = (n[(a + 1) % 3] * t[(a + 2) % 3] - n[(a + 2) % 3] * t[(a + 1) % 3]);
+
+    u += d * t[a] / chord;
+    w += d * side / (chord * size);
+    z += d * n[a] / size;
+  }
+  u -= PetscSinReal(half) / k;
+  w -= PetscCosReal(half) / k;
+  angle = PetscAtan2Real(k * u, -k * w);
+  off = PetscSqrtReal(u * u + w * w) - 1 / PetscAbsReal(k);
+  return (PetscBool)(PetscAbsReal(angle) <= PetscAbsReal(half) && off * off + z * z < PetscSqr(spec->diameter / 2));
+}
+
+/* How far the arc rises over its chord, m. */
+static PetscReal rise_of(const AncfBeamSpec *spec)
+{
+  PetscReal chord2 = 0;
+
+  for (int a = 0; a < 3; a++) chord2 += PetscSqr(spec->end[a] - spec->start[a]);
+  if (spec->curvature == 0) return 0;
+  return (1 - PetscSqrtReal(PetscMax(0, 1 - PetscSqr(spec->curvature) * chord2 / 4))) / PetscAbsReal(spec->curvature);
+}
+
 static PetscBool inside_beam(const AncfBeamSpec *spec, PetscInt dim, const PetscReal x[3])
 {
   PetscReal L2 = 0, s = 0, r2 = 0, t[3];
 
+  if (spec->curvature != 0) return inside_arc(spec, dim, x);
   for (PetscInt a = 0; a < dim; a++) {
     t[a] = spec->end[a] - spec->start[a];
     L2 += t[a] * t[a];
@@ -106,8 +146,9 @@ static void bounds(const Carve *c, const Image *image, PetscReal lo[3], PetscRea
   for (PetscInt a = 0; a < 3; a++) {
     if (image->number < s->nbeams) {
       const AncfBeamSpec *spec = &s->beams[image->number].spec;
-      lo[a] = PetscMin(spec->start[a], spec->end[a]) - spec->diameter / 2 + image->shift[a];
-      hi[a] = PetscMax(spec->start[a], spec->end[a]) + spec->diameter / 2 + image->shift[a];
+      const PetscReal reach = spec->diameter / 2 + rise_of(spec);
+      lo[a] = PetscMin(spec->start[a], spec->end[a]) - reach + image->shift[a];
+      hi[a] = PetscMax(spec->start[a], spec->end[a]) + reach + image->shift[a];
     } else {
       const PetscInt body = image->number - s->nbeams;
       const PetscReal reach = reach_of(&s->bodies[body].spec);

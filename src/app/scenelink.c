@@ -113,22 +113,25 @@ PetscErrorCode AppSceneFreeLinks(AppScene *s)
 }
 
 /* Where a node lies at first. */
-static void place(const AppScene *s, PetscInt beam, PetscInt node, PetscReal x[3])
+static PetscErrorCode place(const AppScene *s, PetscInt beam, PetscInt node, PetscReal x[3])
 {
   const AncfBeamSpec *spec = &s->beams[beam].spec;
-  const PetscReal xi = (PetscReal)node / (PetscReal)spec->elements;
+  PetscReal e[6];
 
-  for (int a = 0; a < 3; a++) x[a] = spec->start[a] * (1 - xi) + spec->end[a] * xi;
+  PetscFunctionBegin;
+  PetscCall(AncfBeamSpecGetPoint(spec, (PetscReal)node / (PetscReal)spec->elements, e));
+  PetscCall(PetscArraycpy(x, e, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* By the names of the scene: nodes apart, and nodes that are listed already. */
 static PetscErrorCode check_nodes(const AppScene *s, PetscInt number)
 {
   const SceneLink *l = &s->links[number];
-  PetscReal x0[3], x[3];
+  PetscReal x0[3] = {0}, x[3] = {0};
 
   PetscFunctionBegin;
-  place(s, l->beam[0], l->node[0], x0);
+  PetscCall(place(s, l->beam[0], l->node[0], x0));
   for (PetscInt k = 0; k < l->n; k++) {
     const AncfBeamSpec *spec = &s->beams[l->beam[k]].spec;
     PetscReal d = 0, length = 0;
@@ -141,7 +144,7 @@ static PetscErrorCode check_nodes(const AppScene *s, PetscInt number)
                    "each once",
                    l->name, l->node[k], s->beams[l->beam[k]].name, s->links[m].name);
     if (l->body[0]) continue;
-    place(s, l->beam[k], l->node[k], x);
+    PetscCall(place(s, l->beam[k], l->node[k], x));
     for (int a = 0; a < 3; a++) d += PetscSqr(x[a] - x0[a]), length += PetscSqr(spec->end[a] - spec->start[a]);
     PetscCheck(d <= 1e-16 * length / PetscSqr((PetscReal)spec->elements), PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
                "link '%s': node %" PetscInt_FMT " of beam '%s' lies %g m from node %" PetscInt_FMT
@@ -172,11 +175,11 @@ static PetscErrorCode support_nodes(App *app, const SceneLink *l)
 static PetscErrorCode check_velocity(const App *app, const SceneLink *l, PetscInt k, PetscInt body)
 {
   const PetscReal *v = app->scene.beams[l->beam[k]].spec.velocity;
-  PetscReal X[3], V[3], w[3], x[3], d = 0, size = 0;
+  PetscReal X[3], V[3], w[3], x[3] = {0}, d = 0, size = 0;
 
   PetscFunctionBegin;
   PetscCall(RigidGetState(app->rigid, body, X, NULL, V, w));
-  place(&app->scene, l->beam[k], l->node[k], x);
+  PetscCall(place(&app->scene, l->beam[k], l->node[k], x));
   for (int a = 0; a < 3; a++) {
     const int b = (a + 1) % 3, c = (a + 2) % 3;
 
