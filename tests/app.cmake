@@ -41,3 +41,5 @@ frond_app_test(app_floating validation)
 add_test(NAME app_floating_fine COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${FROND_TEST_PYTHON}
   ${CMAKE_CURRENT_SOURCE_DIR}/app_floating.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_floating_fine ${PROJECT_SOURCE_DIR} 0.01)
 set_tests_properties(app_floating_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+frond_app_test(app_migration validation-long)
+set_tests_properties(app_migration PROPERTIES TIMEOUT 7200)

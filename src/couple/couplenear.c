@@ -156,6 +156,7 @@ static PetscErrorCode LinkOnLink(CoupleShort c, const ShortLink *la, const Short
 {
   const ShortBeam *ba = &c->beam[la->beam], *bb = &c->beam[lb->beam];
   const PetscReal *xb = c->x + 3 * bb->sample;
+  const PetscReal far = PetscSqr(ba->R + bb->R + c->reach + 2. * bb->step); /* the foot is within a step of its sample */
 
   PetscFunctionBegin;
   for (PetscInt i = la->first; i < la->first + la->n; i++) {
@@ -165,6 +166,7 @@ static PetscErrorCode LinkOnLink(CoupleShort c, const ShortLink *la, const Short
     for (PetscInt j = lb->first; j < lb->first + lb->n; j++) {
       const PetscReal d2 = Distance2(x, xb + 3 * j);
       PetscReal lo = bb->lo + ((PetscReal)j - .5) * bb->step, hi = lo + 2. * bb->step;
+      if (d2 > far) continue;
       if ((j > 0 && d2 > Distance2(x, xb + 3 * (j - 1))) || (j < bb->samples - 1 && d2 >= Distance2(x, xb + 3 * (j + 1))))
         continue;
       if (j == 0) lo = bb->lo;
