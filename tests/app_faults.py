@@ -18,7 +18,7 @@ import apptest
 
 check, frond = base.check, base.frond
 random.seed(20261)
-FIXED = ["run", "all.yaml", "-sph_dt", "1e-4", "-audit", "true"]
+FIXED = ["run", "all.yaml", "-sph_dt", "1e-4", "-audit", "true", "-audit_energy", "-1"]
 
 
 def start(args, **kw):
