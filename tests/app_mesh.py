@@ -76,6 +76,54 @@ same(run("group", "  mesh: two.msh\n  group: my rod"), straight, 0, "one of two 
 back = run("back", "  mesh: back.msh") if frond.write("back.msh", msh(places, [(b, a, 1) for a, b, _ in chain])) or True else None
 same(back, run("yamlback", "  start: [1, 0.5, 0.25]\n  end: [0, 0, 0]\n  elements: 4"), 0, "lines from the other end")
 
+# Numbers of physical points and of physical lines are counted apart.
+points = msh(places, chain).replace('$PhysicalNames\n1\n', '$PhysicalNames\n2\n0 1 "foot"\n').replace("$Elements\n4\n", "$Elements\n5\n9 15 2 1 1 2\n")
+frond.write("points.msh", points)
+same(run("points", "  mesh: points.msh"), straight, 0, "with a physical point")
+NEW = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+0 1 "foot"
+1 1 "rod"
+$EndPhysicalNames
+$Entities
+2 1 0 0
+1 0 0 0 1 1
+2 1 0.5 0.25 0
+1 0 0 0 1 0.5 0.25 1 1 2 1 -2
+$EndEntities
+$Nodes
+3 5 1 5
+0 1 0 1
+1
+0 0 0
+0 2 0 1
+2
+1 0.5 0.25
+1 1 0 3
+3
+4
+5
+0.25 0.125 0.0625
+0.5 0.25 0.125
+0.75 0.375 0.1875
+$EndNodes
+$Elements
+2 5 1 5
+0 1 15 1
+1 1
+1 1 1 4
+2 1 3
+3 3 4
+4 4 5
+5 5 2
+$EndElements
+"""
+frond.write("new.msh", NEW)
+same(run("new", "  mesh: new.msh"), straight, 0, "format 4.1")
+
 # An arc: curvature and normal are those of a circle through three nodes, to a few rounding errors (1e-15); the motion of 20 steps
 # is bounded by the same perturbation of the rest shape times EA/EI L^2 = 16/d^2 = 1e4 of the stiffest response.
 arc = [(math.cos(k * math.pi / 12), math.sin(k * math.pi / 12), 0) for k in range(7)]
