@@ -115,6 +115,17 @@ def number(path):
     return int(os.path.basename(path)[11:20])
 
 
+def columns():
+    """A history with other columns is told from one of another run, and a new folder takes the run on."""
+    args = ["run", "dry.yaml", "-time_end", "1e-3", "-output_dir"]
+    frond.runs(*args, "columns", "-audit", "false", "-checkpoint_every", "5e-4", "-checkpoint_keep", "9")
+    half = os.path.relpath(checkpoints("columns")[0], frond.folder)
+    again = ["-restart", half, "-restart_changed", "-audit", "true"]
+    code, out, err = frond(*args, "columns", *again)
+    check(code != 0 and "has other columns" in err and "'beams_damped[J]' now" in err and len(err.strip().splitlines()) == 1, "other columns: %d: %s" % (code, err))
+    frond.runs(*args, "columns_new", *again)
+
+
 def cut(name, args, steps=200, threads="1", scene="all.yaml", dt=1e-4):
     """`steps` steps in one go without a checkpoint, against half of them, a checkpoint, and the rest."""
     args = [*args, "-time_end", repr(steps * dt), "-output_every", repr(steps * dt / 10)]
@@ -156,6 +167,7 @@ def variants():
     for kind in ("beuler", "cn", "euler", "basicsymplectic"):
         extra = ["-ancf_ts_basicsymplectic_type", "2"] if kind == "basicsymplectic" else []
         cut(kind, ["-ancf_ts_type", kind, *extra, "-ancf_substeps", "4"], steps=40)
+    columns()
     cut("dry", ["-audit", "true"], scene="dry.yaml", threads="2")
     # Newton's method fails with 2 iterations: steps are halved
     cut("dry_halved", ["-ancf_snes_max_it", "2", "-beam_rod_end0", "pin", "-beam_young", "2e7", "-time_step", "5e-3"], steps=40, scene="dry.yaml", dt=5e-3)

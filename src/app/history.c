@@ -24,6 +24,7 @@ struct _AppHistory {
   PetscReal *row, *rows; /* ncols; nrows x ncols */
   HistoryWorst worst;
   AppAudit audit;
+  char message[512];
 };
 
 static PetscReal norm3(const PetscReal v[3])
@@ -349,6 +350,28 @@ static PetscBool parse_line(AppHistory h, char *line, PetscBool header)
   return PETSC_TRUE;
 }
 
+/* Into h->message: the first column of a history.csv with this header that is not the table's. */
+static PetscErrorCode name_columns(AppHistory h, const char *header)
+{
+  char name[128];
+  size_t n = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < h->ncols; c++, header += n + (header[n] == ',')) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s[%s]", h->column[c].name, h->column[c].unit));
+    n = strcspn(header, ",");
+    if (n != strlen(name) || strncmp(header, name, n)) break;
+    name[0] = 0;
+  }
+  if (!name[0]) n = strcspn(header, ",");
+  PetscCall(
+      PetscSNPrintf(h->message, sizeof(h->message),
+                    "'%s/history.csv' has other columns than this run: '%.*s' where there is '%s' now (audit, probes, beams, "
+                    "bodies, joints make columns): set output_dir to a new folder, where the history begins anew",
+                    h->dir, n ? (int)PetscMin(n, 100) : 4, n ? header : "none", name[0] ? name : "none"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Read `rows` rows of the run so far; a folder without a history begins one. */
 static PetscErrorCode read_rows(AppHistory h, PetscInt rows, PetscReal tlast)
 {
@@ -365,6 +388,12 @@ static PetscErrorCode read_rows(AppHistory h, PetscInt rows, PetscReal tlast)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   good = parse_line(h, line, PETSC_TRUE);
+  if (!good) {
+    line[strcspn(line, "\n")] = 0;
+    PetscCall(name_columns(h, line));
+    free(line);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "%s", h->message);
+  }
   while (good && h->nrows < rows && (good = getline(&line, &len, h->csv) > 0 && parse_line(h, line, PETSC_FALSE)))
     PetscCall(add_row(h));
   free(line);
