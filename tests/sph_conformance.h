@@ -258,6 +258,23 @@ static inline PetscErrorCode SceneMoveBody(Sph sph, const Scene *c, double t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Group 1 turns where it is, whatever its velocities say: for the velocity that walls lend. */
+static inline PetscErrorCode SceneTurnBody(Sph sph, const Scene *c)
+{
+  PetscReal body[4], *x, *w;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  SceneBody(c, body);
+  PetscCall(SceneBodyMarkers(c, body, &n, &x));
+  PetscCall(PetscMalloc1(3 * n, &w));
+  for (PetscInt i = 0; i < 3 * n; i++) w[i] = c->dim == 3 || i % 3 == 2 ? 5.0 * (PetscReal)(i % 3) - 4.0 : 0.0;
+  PetscCall(SphSetBoundaryRotation(sph, 1, w));
+  PetscCall(PetscFree(w));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One whole step with a moving body. */
 static inline PetscErrorCode SceneStep(Sph sph, const Scene *c, double dt)
 {

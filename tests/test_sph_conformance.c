@@ -139,6 +139,8 @@ static const Scene scenes[] = {
 typedef struct {
   PetscInt n;
   double *x[3], *v[3], *s, *a[3], *dv[3], *ds, *m, *ratio, *ab[3];
+  const double *omega; /* the fluid's own: angular velocity at boundary markers */
+  PetscInt nfluid;
   int *group;
   double *memory;
 } Snapshot;
@@ -157,6 +159,8 @@ static PetscErrorCode Take(Sph sph, Snapshot *t)
                     sph->wallratio,  sph->ab[0],      sph->ab[1],      sph->ab[2]};
   const int k = (int)(sizeof(to) / sizeof(to[0]));
   t->n = n;
+  t->omega = sph->omega;
+  t->nfluid = sph->nfluid;
   PetscCall(PetscMalloc2((size_t)(k * n), &t->memory, n, &t->group));
   for (int j = 0; j < k; j++) {
     *to[j] = t->memory + (size_t)j * (size_t)n;
@@ -376,7 +380,7 @@ static void CheckRates(const Ref *r, const char *scene)
 }
 
 typedef struct {
-  Sum w, p, v[3], xsph[3];
+  Sum w, wr, x[3], p, v[3], xsph[3];
   double g[3];
 } AuxSums;
 
@@ -392,8 +396,10 @@ static void WallTerm(const Ref *r, PetscInt a, PetscInt b, const Pair *x, void *
     dropmag += rho * fabs(s->g[k] * x->x[k]);
     drop1 += rho * fabs(s->g[k]);
     Add(&s->v[k], w * r->t->v[k][b], mag * fabs(r->t->v[k][b]), dw * fabs(r->t->v[k][b]));
+    Add(&s->x[k], -w * rho * x->x[k], mag * rho * fabs(x->x[k]), rho * (dw * fabs(x->x[k]) + w * x->dx));
   }
   Add(&s->w, w, mag, dw);
+  Add(&s->wr, w * rho, mag * rho, dw * rho);
   Add(&s->p, w * (p + drop), mag * (fabs(p) + dropmag), dw * (fabs(p) + dropmag) + w * (drop1 * x->dx + PressureError(r)));
 }
 
@@ -433,8 +439,13 @@ static void CheckAuxiliary(const Ref *r, const Snapshot *out, const char *scene)
       ForNeighbours(r, i, 1, WallTerm, &s);
       if (s.w.v < 1e-4) continue; /* at the threshold below which a wall marker counts as dry */
       for (int k = 0; k < p->dim; k++) {
-        err[k] = fabs(out->dv[k][i] - t->ratio[i] * (t->v[k][i] - s.v[k].v / s.w.v));
-        bound[k] = t->ratio[i] * QuotientBound(&s.v[k], &s.w, r->u) + 8.0 * U2;
+        const double *o = t->omega + 3 * (i - t->nfluid); /* v + omega x (<x> - x) */
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        const double wall = t->v[k][i] + (o[l] * s.x[m].v - o[m] * s.x[l].v) / s.wr.v;
+        err[k] = fabs(out->dv[k][i] - t->ratio[i] * (wall - s.v[k].v / s.w.v));
+        bound[k] = t->ratio[i] * (QuotientBound(&s.v[k], &s.w, r->u) + fabs(o[l]) * QuotientBound(&s.x[m], &s.wr, r->u) +
+                                  fabs(o[m]) * QuotientBound(&s.x[l], &s.wr, r->u)) +
+                   8.0 * U2;
       }
       const double pw = PetscMax(s.p.v / s.w.v - p->pb, -0.9 * p->B), sw = pow(1.0 + pw / p->B, 1.0 / p->gamma) - 1.0;
       err[3] = fabs(out->s[i] - sw);
@@ -536,6 +547,7 @@ static PetscErrorCode CheckSums(Sph sph, const Scene *c)
     if (p->periodic[k]) r.edge = PetscMax(r.edge, L / PetscMax(1.0, floor(L / (2.5 * p->h))));
   }
   PetscCall(SceneMoveBody(sph, c, 1e-4));
+  PetscCall(SceneTurnBody(sph, c));
   PetscCall(Take(sph, &before));
   PetscCall((*sph->ops->rates)(sph));
   PetscCall(Take(sph, &after));

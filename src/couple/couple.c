@@ -140,6 +140,9 @@ PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
     }
     PetscCall(CoupleMoveSlot(c, s, ahead));
     PetscCall(SphSetBoundaryMotion(c->sph, s->group, s->x, s->v, s->a));
+    if (!s->w) continue;
+    PetscCall((*s->surface->ops.rotation)(s->surface, s->w));
+    PetscCall(SphSetBoundaryRotation(c->sph, s->group, s->w));
   }
   PetscCall(PetscLogEventEnd(COUPLE_Kinematics, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -157,6 +160,7 @@ PetscErrorCode CoupleSetUp(Couple c)
     const PetscReal *x, *volume, *depth;
     PetscCall((*s->surface->ops.getmarkers)(s->surface, &s->n, &x, &volume, &depth));
     PetscCall(PetscCalloc4(3 * s->n, &s->x, 3 * s->n, &s->v, 3 * s->n, &s->a, 3 * s->n, &s->f));
+    if (s->surface->ops.rotation) PetscCall(PetscCalloc1(3 * s->n, &s->w));
     if (!s->surface->held)
       PetscCall(PetscCalloc4(3 * s->n, &s->flast, 3 * s->n, &s->vstart, 3 * s->n, &s->alast[0], 3 * s->n, &s->alast[1]));
     most = PetscMax(most, s->n);
@@ -197,6 +201,7 @@ PetscErrorCode CoupleDestroy(Couple *couple)
     CoupleSlot *s = &(*couple)->slot[i];
     PetscCall(CoupleLinkDestroy(s));
     if (s->x) PetscCall(PetscFree4(s->x, s->v, s->a, s->f));
+    PetscCall(PetscFree(s->w));
     if (s->flast) PetscCall(PetscFree4(s->flast, s->vstart, s->alast[0], s->alast[1]));
     PetscCall(CoupleSurfaceDestroy(&s->surface));
   }

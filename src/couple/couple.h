@@ -45,6 +45,8 @@ typedef struct {
   /* Optional: linear momentum p (kg m/s) and the mean forces over the last step (N) that do not come from the fluid, of weight
    * and of supports. */
   PetscErrorCode (*momentum)(CoupleSurface, PetscReal p[3], PetscReal weight[3], PetscReal support[3]);
+  /* Optional, for surfaces that turn: angular velocity at each marker (n x 3, rad/s) in the state of the last kinematics call. */
+  PetscErrorCode (*rotation)(CoupleSurface, PetscReal *omega);
   /* Optional. */
   PetscErrorCode (*view)(CoupleSurface, PetscViewer);
   /* Optional: free the context. */

@@ -69,6 +69,15 @@ static PetscErrorCode Kinematics_Host(CoupleSurface surface, PetscReal dt, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Rotation_Host(CoupleSurface surface, PetscReal *omega)
+{
+  const Host *h = (const Host *)surface->ctx;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < h->n; i++) PetscCall(PetscArraycpy(omega + 3 * i, h->frame[h->section[i]].w, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode GetMarkers_Host(CoupleSurface surface, PetscInt *n, const PetscReal **x, const PetscReal **volume,
                                       const PetscReal **depth)
 {
@@ -446,6 +455,7 @@ PetscErrorCode CoupleSurfaceCreateHost(MPI_Comm comm, const char name[], const C
 {
   CoupleSurfaceOps sops = {.getmarkers = GetMarkers_Host,
                            .kinematics = Kinematics_Host,
+                           .rotation = Rotation_Host,
                            .zeroloads = ZeroLoads_Host,
                            .applyforces = ApplyForces_Host,
                            .advance = Advance_Host,

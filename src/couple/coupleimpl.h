@@ -19,6 +19,7 @@ typedef struct {
   PetscReal *x, *v, *a, *f;             /* n x 3 */
   PetscReal *flast, *vstart, *alast[2]; /* not held: force of the last step, velocity at the start of this one, mean
                                          * accelerations over the last two */
+  PetscReal *w;                         /* n x 3, angular velocity, rad/s; NULL for surfaces that do not turn */
   CoupleAudit audit;
   PetscBool linked;        /* moved by its state (sphlink.h); x, v, f are then filled when somebody asks */
   PetscReal *state, *load; /* of the link */

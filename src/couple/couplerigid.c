@@ -92,6 +92,15 @@ static PetscErrorCode Kinematics_Rigid(CoupleSurface s, PetscReal dt, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Rotation_Rigid(CoupleSurface s, PetscReal *omega)
+{
+  const Body *b = (const Body *)s->ctx;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 3 * b->n; i++) omega[i] = b->omega[i % 3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Takes back what the last step added: loads that the host gave the body stay. */
 static PetscErrorCode ZeroLoads_Rigid(CoupleSurface s)
 {
@@ -265,6 +274,7 @@ static PetscErrorCode CreateBody(Rigid rigid, PetscInt body, const char name[], 
 {
   const CoupleSurfaceOps ops = {.getmarkers = GetMarkers_Rigid,
                                 .kinematics = Kinematics_Rigid,
+                                .rotation = Rotation_Rigid,
                                 .zeroloads = ZeroLoads_Rigid,
                                 .applyforces = ApplyForces_Rigid,
                                 .advance = Advance_Rigid,

@@ -375,6 +375,26 @@ PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphSetBoundaryRotation(Sph sph, PetscInt group, const PetscReal *omega)
+{
+  PetscInt first, n;
+
+  PetscFunctionBegin;
+  PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
+  PetscCheck(sph->setup, sph->comm, PETSC_ERR_ORDER, "SphSetBoundaryRotation() must come after SphSetUp()");
+  if (!sph->omega) PetscFunctionReturn(PETSC_SUCCESS);
+  first = 3 * (sph->groupstart[group] - sph->nfluid);
+  n = 3 * (sph->groupstart[group + 1] - sph->groupstart[group]);
+  for (PetscInt i = 0; i < n; i++) {
+    if (sph->omega[first + i] == omega[i]) continue;
+    PetscCall(PetscArraycpy(sph->omega + first, omega, n));
+    if (sph->ops->rotation) PetscCall((*sph->ops->rotation)(sph, group));
+    break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphGetBoundaryForce(Sph sph, PetscInt group, PetscReal *f)
 {
   PetscFunctionBegin;

@@ -255,6 +255,12 @@ FROND_EXTERN PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step);
 FROND_EXTERN PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v,
                                                  const PetscReal *a);
 /*
+  Angular velocity of the wall at a group's markers, 0 until set; wall adami needs it for no-slip to be of second order at walls
+  that turn. Kept until set anew. group: as SphAddBoundary() gave it. omega: n x 3, rad/s, in the order of SphAddBoundary(); only
+  the third number counts in 2D. Source: sph_wall_velocity() of sphpair.h.
+*/
+FROND_EXTERN PetscErrorCode SphSetBoundaryRotation(Sph sph, PetscInt group, const PetscReal *omega);
+/*
   Fluid forces on a group's markers: the right-hand side of Eq. 5 times the marker mass. group: as SphAddBoundary() gave it.
   f: n x 3, N (2D: N/m). Source: the paper, Eq. 5 and Sect. 2.4.
 */

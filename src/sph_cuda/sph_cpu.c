@@ -345,5 +345,6 @@ static PetscErrorCode State_CPU(Sph sph, FrondState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const SphOps SphOps_CPU = {SetUp_CPU,  Build_CPU, Rates_CPU, HalfStep_CPU, FullStep_CPU, Reinit_CPU, Motion_CPU, Force_CPU,
-                           Limits_CPU, Pull_CPU,  Push_CPU,  Destroy_CPU,  NULL,         State_CPU,  NULL,       NULL};
+const SphOps SphOps_CPU = {SetUp_CPU,  Build_CPU, Rates_CPU,  HalfStep_CPU, FullStep_CPU, Reinit_CPU,
+                           Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU,     Push_CPU,     Destroy_CPU,
+                           NULL,       State_CPU, NULL,       NULL,         NULL};

@@ -216,12 +216,13 @@ SPH_INLINE void AuxBoundary(const int kernel, const Sweep *w, const List *l, int
                           *restrict VY = l->q[SPH_Q_V + 1], *restrict VZ = l->q[SPH_Q_V + 2];
   const sphreal *restrict S = l->q[SPH_Q_S], *restrict P = l->q[SPH_Q_P];
   const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i];
-  sphreal sw = 0, sp = 0, vx = 0, vy = 0, vz = 0, rx = 0, ry = 0, rz = 0;
-#pragma omp simd reduction(+ : sw, sp, vx, vy, vz, rx, ry, rz)
+  sphreal sw = 0, sr = 0, sp = 0, vx = 0, vy = 0, vz = 0, rx = 0, ry = 0, rz = 0;
+#pragma omp simd reduction(+ : sw, sr, sp, vx, vy, vz, rx, ry, rz)
   for (int j = 0; j < l->n; j++) {
     const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], rho = c.rho0 + c.rho0 * S[j];
     const sphreal W = sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv), wr = W * rho;
     sw += W;
+    sr += wr;
     sp += wr * rho * P[j];
     vx += W * VX[j];
     vy += W * VY[j];
@@ -235,12 +236,15 @@ SPH_INLINE void AuxBoundary(const int kernel, const Sweep *w, const List *l, int
     sph->st.s[i] = sph_eos_inverse(-par->pb, par->B, par->gamma);
     return;
   }
-  const double inv = 1.0 / (double)sw, v[3] = {(double)vx * inv, (double)vy * inv, (double)vz * inv};
-  double p = (double)sp * inv;
+  const double inv = 1.0 / (double)sw, v[3] = {(double)vx * inv, (double)vy * inv, (double)vz * inv},
+               offset[3] = {-(double)(rx / sr), -(double)(ry / sr), -(double)(rz / sr)};
+  double p = (double)sp * inv, dv[3];
   p += ((par->f[0] - sph->ab[0][i]) * (double)rx + (par->f[1] - sph->ab[1][i]) * (double)ry +
         (par->f[2] - sph->ab[2][i]) * (double)rz) *
        inv;
-  for (int k = 0; k < 3; k++) sph->rate.dv[k][i] = sph->wallratio[i] * (sph->st.v[k][i] - v[k]);
+  sph_wall_velocity(sph->wallratio[i], (const double[3]){sph->st.v[0][i], sph->st.v[1][i], sph->st.v[2][i]}, v,
+                    sph->omega + 3 * (sph->id[i] - sph->nfluid), offset, dv);
+  for (int k = 0; k < 3; k++) sph->rate.dv[k][i] = dv[k];
   sph->st.s[i] = sph_eos_inverse(PetscMax(p - par->pb, -0.9 * par->B), par->B, par->gamma);
 }
 

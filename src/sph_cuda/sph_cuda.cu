@@ -105,7 +105,8 @@ static void ListBuffers(Sph sph, SphCuda *cuda, BufferList *list)
   Want(list, &cuda->q, 12 * n * (sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double)));
   Want(list, &cuda->temp, cuda->tempbytes);
   Want(list, &cuda->result, sizeof(SphCudaBox));
-  Want(list, &cuda->motion, 3 * nb);
+  Want(list, &cuda->motion, 4 * nb);
+  Want(list, &d->omega, nb);
   Want(list, &cuda->force, nb);
   SphCudaTable t[SPH_LINKTABLES];
   const int nt = SphCudaLinkTables(&cuda->links, cuda->nb, t);
@@ -132,7 +133,7 @@ static PetscErrorCode Allocate(Sph sph, SphCuda *cuda)
   }
   cuda->bytes = (double)need;
   SphCallCUDA(cudaMallocHost((void **)&cuda->hresult, sizeof(SphCudaBox)));
-  SphCallCUDA(cudaMallocHost((void **)&cuda->hmotion, PetscMax(9 * (size_t)cuda->nb * sizeof(double), (size_t)16)));
+  SphCallCUDA(cudaMallocHost((void **)&cuda->hmotion, PetscMax(12 * (size_t)cuda->nb * sizeof(double), (size_t)16)));
   SphCallCUDA(cudaMallocHost((void **)&cuda->hforce, PetscMax(3 * (size_t)cuda->nb * sizeof(double), (size_t)16)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,6 +189,7 @@ static PetscErrorCode Push_CUDA(Sph sph)
       cuda->hmotion[3 * b + k] = sph->st.x[k][i];
       cuda->hmotion[3 * (cuda->nb + b) + k] = sph->st.v[k][i];
       cuda->hmotion[3 * (2 * cuda->nb + b) + k] = sph->ab[k][i];
+      cuda->hmotion[3 * (3 * cuda->nb + b) + k] = sph->omega ? sph->omega[3 * b + k] : 0.0;
     }
   }
   cuda->dirty0 = cuda->dirty1 = 0;
@@ -228,6 +230,7 @@ static __global__ void MotionKernel(SphCudaArrays d, int dim, int nfluid, int nb
     d.st.v[k][i] = motion[stride + o + k];
     d.ab[k][i] = motion[2 * stride + o + k];
   }
+  for (int k = 0; k < 3; k++) d.omega[o + k] = motion[3 * stride + o + k];
 }
 
 static __global__ void ForceKernel(SphCudaArrays d, int nfluid, int nb, double *force)
@@ -248,7 +251,7 @@ static PetscErrorCode FlushMarkers(Sph sph)
 
   PetscFunctionBegin;
   if (cuda->dirty0 == cuda->dirty1) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 4; k++)
     SphCallCUDA(cudaMemcpyAsync(cuda->motion + k * stride + first, cuda->hmotion + k * stride + first, bytes,
                                 cudaMemcpyHostToDevice, cuda->stream));
   SphCallCUDA(cudaEventRecord(cuda->uploaded, cuda->stream));
@@ -290,6 +293,27 @@ static PetscBool Same(const double *h, const PetscReal *x, PetscInt n)
   return PETSC_TRUE;
 }
 
+/* Boundary markers [b0, b1) of hmotion are to be sent. */
+static void MarkDirty(SphCuda *cuda, PetscInt b0, PetscInt b1)
+{
+  const PetscBool none = cuda->dirty0 == cuda->dirty1 ? PETSC_TRUE : PETSC_FALSE;
+
+  cuda->dirty0 = none ? b0 : PetscMin(cuda->dirty0, b0);
+  cuda->dirty1 = none ? b1 : PetscMax(cuda->dirty1, b1);
+}
+
+static PetscErrorCode Rotation_CUDA(Sph sph, PetscInt group)
+{
+  SphCuda *cuda = (SphCuda *)sph->data;
+  const PetscInt b0 = sph->groupstart[group] - sph->nfluid, b1 = sph->groupstart[group + 1] - sph->nfluid;
+
+  PetscFunctionBegin;
+  PetscCall(SphCudaAwaitUpload(cuda));
+  PetscCall(PetscArraycpy(cuda->hmotion + 9 * cuda->nb + 3 * b0, sph->omega + 3 * b0, 3 * (b1 - b0)));
+  MarkDirty(cuda, b0, b1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Markers that stay as they are, walls above all, are not sent again. */
 static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
@@ -306,13 +330,7 @@ static PetscErrorCode Motion_CUDA(Sph sph, PetscInt group, const PetscReal *x, c
     PetscCall(PetscArraycpy(ha, a, 3 * (b1 - b0)));
   else
     PetscCall(PetscArrayzero(ha, 3 * (b1 - b0)));
-  if (cuda->dirty0 == cuda->dirty1) {
-    cuda->dirty0 = b0;
-    cuda->dirty1 = b1;
-  } else {
-    cuda->dirty0 = PetscMin(cuda->dirty0, b0);
-    cuda->dirty1 = PetscMax(cuda->dirty1, b1);
-  }
+  MarkDirty(cuda, b0, b1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -372,6 +390,9 @@ static PetscErrorCode State_CUDA(Sph sph, FrondState *s)
   if (load) {
     PetscCall((*s->has)(s, "fluid/search_cuda/built", &there));
     cuda->forcecurrent = cuda->loadcurrent = PETSC_FALSE;
+    if (sph->omega)
+      SphCallCUDA(cudaMemcpyAsync(cuda->d.omega, sph->omega, 3 * (size_t)cuda->nb * sizeof(double), cudaMemcpyHostToDevice,
+                                  cuda->stream));
   }
   if (!there) { /* a state of the other backend */
     PetscCall(Push_CUDA(sph));
@@ -417,6 +438,7 @@ static PetscErrorCode SetUp_CUDA(Sph sph)
   cuda->keycap += cuda->keycap / 4 + 2;
   cuda->d.n = (int)sph->n;
   cuda->nb = sph->n - sph->nfluid;
+  cuda->d.nfluid = (int)sph->nfluid;
   SphCallCUDA(cudaStreamCreateWithFlags(&cuda->stream, cudaStreamNonBlocking));
   SphCallCUDA(cudaEventCreateWithFlags(&cuda->uploaded, cudaEventDisableTiming));
   SphCallCUDA(cudaEventCreateWithFlags(&cuda->downloaded, cudaEventDisableTiming));
@@ -456,6 +478,7 @@ static PetscErrorCode Destroy_CUDA(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-extern "C" const SphOps SphOps_CUDA = {
-    SetUp_CUDA,    SphCudaBuild, Rates_CUDA, SphCudaHalfStep, SphCudaFullStep, SphCudaReinit, Motion_CUDA,       Force_CUDA,
-    SphCudaLimits, Pull_CUDA,    Push_CUDA,  Destroy_CUDA,    SphCudaCheck,    State_CUDA,    SphCudaLinkMotion, SphCudaLinkLoad};
+extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,      SphCudaBuild, Rates_CUDA,   SphCudaHalfStep, SphCudaFullStep,
+                                       SphCudaReinit,   Motion_CUDA,  Force_CUDA,   SphCudaLimits,   Pull_CUDA,
+                                       Push_CUDA,       Destroy_CUDA, SphCudaCheck, State_CUDA,      SphCudaLinkMotion,
+                                       SphCudaLinkLoad, Rotation_CUDA};

@@ -23,6 +23,8 @@ typedef struct {
   SphState st, stn;
   SphRates rate;
   double *m, *wallratio, *ab[3];
+  double *omega; /* angular velocity at boundary markers in the order added, (n - nfluid) x 3, rad/s */
+  int nfluid;
   double *xref[3]; /* positions at the last build, m */
   int *group, *id, *slot;
   unsigned *key;  /* sort key of each slot at the last build, see sphcell.h */
@@ -70,7 +72,7 @@ typedef struct {
   size_t tempbytes;
   void *result, *hresult;   /* result of a reduction on the device, and in pinned memory */
   PetscInt nb;              /* boundary markers */
-  double *motion, *hmotion; /* 3 x nb x 3: x, v, a of boundary markers in the order added; device and pinned */
+  double *motion, *hmotion; /* 4 x nb x 3: x, v, a, angular velocity of boundary markers in the order added; device and pinned */
   double *force, *hforce;   /* nb x 3 */
   PetscInt dirty0, dirty1;  /* range of hmotion not yet on the device */
   cudaEvent_t uploaded;     /* hmotion and hstate may be written again */

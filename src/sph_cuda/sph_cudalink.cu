@@ -218,6 +218,7 @@ static __global__ void LinkMotionKernel(SphCudaArrays d, SphCudaLinks l, int dim
     d.st.v[k][i] = v[k];
     d.ab[k][i] = a[k];
   }
+  for (int k = 0; k < 3; k++) d.omega[3 * (size_t)b + k] = s->w[k];
 }
 
 static __global__ void ChunkKernel(SphCudaArrays d, SphCudaLinks l, int nfluid)

@@ -127,9 +127,9 @@ static __device__ __forceinline__ void AuxFluid(const SphCudaArrays &d, const Sp
   d.rate.dv[2][i] = (double)(c.zeta * sz);
 }
 
-/* Sums over the fluid around a boundary marker: weights, pressure, velocity, rho x_ab. */
+/* Sums over the fluid around a boundary marker: weights, weights times rho, pressure, velocity, rho x_ab. */
 struct WallSums {
-  sphreal w, p, v[3], rx[3];
+  sphreal w, wr, p, v[3], rx[3];
 };
 
 /* Adami, Hu, Adams (2012), Eqs. 22-27: extrapolated velocity and density of boundary marker i. */
@@ -141,11 +141,15 @@ static __device__ __forceinline__ void WallExtrapolate(const SphCudaArrays &d, c
     return;
   }
   const double inv = 1.0 / (double)s.w;
-  double p = (double)s.p * inv;
+  double p = (double)s.p * inv, own[3], mean[3], offset[3], dv[3];
   for (int k = 0; k < 3; k++) {
     p += (par.f[k] - d.ab[k][i]) * (double)s.rx[k] * inv;
-    d.rate.dv[k][i] = d.wallratio[i] * (d.st.v[k][i] - (double)s.v[k] * inv);
+    own[k] = d.st.v[k][i];
+    mean[k] = (double)s.v[k] * inv;
+    offset[k] = -(double)(s.rx[k] / s.wr);
   }
+  sph_wall_velocity(d.wallratio[i], own, mean, d.omega + 3 * (size_t)(d.id[i] - d.nfluid), offset, dv);
+  for (int k = 0; k < 3; k++) d.rate.dv[k][i] = dv[k];
   const double ps = p - par.pb, least = -0.9 * par.B;
   d.st.s[i] = sph_eos_inverse(ps > least ? ps : least, par.B, par.gamma);
 }
@@ -155,11 +159,12 @@ static __device__ __forceinline__ void AuxBoundary(const SphCudaArrays &d, const
                                                    const SphPairConst &c, const Prepared &q, int i, unsigned key)
 {
   const Real4 x = q.xm[i];
-  WallSums s = {0, 0, {0, 0, 0}, {0, 0, 0}};
+  WallSums s = {0, 0, 0, {0, 0, 0}, {0, 0, 0}};
   auto term = [&](int j, bool, sphreal dx, sphreal dy, sphreal dz, sphreal r2, sphreal) {
     const Real4 b = q.us[j];
     const sphreal rho = Density(c, b.w), w = sph_w(KERNEL, Sqrt(r2) * c.hinv), wr = w * rho;
     s.w += w;
+    s.wr += wr;
     s.p += wr * rho * q.vp[j].w;
     s.v[0] += w * b.x;
     s.v[1] += w * b.y;

@@ -81,6 +81,7 @@ typedef struct _SphOps {
   /* sphlink.c: link number k has a new state; its load and the SECTION_TOTALS totals. NULL: done on the host */
   PetscErrorCode (*linkmotion)(Sph, PetscInt k);
   PetscErrorCode (*linkload)(Sph, PetscInt k, PetscReal *load, double *totals);
+  PetscErrorCode (*rotation)(Sph, PetscInt group); /* sph->omega of the group changed; NULL: it is read where it is */
 } SphOps;
 
 struct _p_Sph {
@@ -105,6 +106,7 @@ struct _p_Sph {
   double *m;         /* mass, kg */
   double *wallratio; /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0 */
   double *ab[3];     /* boundary acceleration, m/s^2 */
+  double *omega;     /* angular velocity at boundary markers in the order added, (n - nfluid) x 3, rad/s; NULL without adami */
   int *group;        /* -1 fluid, -2 left, else group */
   int *id, *slot;
   double *zero;           /* array of zeros that stands for those of the above that no term reads, or NULL */

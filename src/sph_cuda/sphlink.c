@@ -155,6 +155,8 @@ static PetscErrorCode PlaceMarkers(Sph sph, SphLink *k, PetscBool move)
     section_offset(s, k->offset + 3 * i, k->o + 3 * i);
     section_marker(s, k->o + 3 * i, k->x + 3 * i, k->v + 3 * i, k->a + 3 * i);
   }
+  for (int i = 0; i < k->n && sph->omega; i++)
+    PetscCall(PetscArraycpy(sph->omega + 3 * (sph->groupstart[k->group] - sph->nfluid + i), k->frame[k->section[i]].w, 3));
   if (move) PetscCall((*sph->ops->motion)(sph, k->group, k->x, k->v, k->a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -79,6 +79,7 @@ PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share)
   }
   PetscCall(Allocate(sph, PETSC_FALSE, &sph->stn.s));
   PetscCall(Allocate(sph, PETSC_FALSE, &sph->rate.ds));
+  if (p->wall == SPH_WALL_ADAMI) PetscCall(PetscCalloc1(3 * PetscMax(1, sph->n - sph->nfluid), &sph->omega));
   if (noab) {
     PetscCall(PetscFree(sph->wallratio));
     sph->wallratio = sph->zero;
@@ -112,6 +113,7 @@ PetscErrorCode SphFreeArrays(Sph sph)
   PetscCall(Free(sph, &sph->m));
   PetscCall(Free(sph, &sph->wallratio));
   PetscCall(PetscFree(sph->zero));
+  PetscCall(PetscFree(sph->omega));
   PetscCall(PetscFree(sph->group));
   PetscCall(PetscFree(sph->id));
   PetscCall(PetscFree(sph->slot));
@@ -298,6 +300,7 @@ PetscErrorCode SphGetWork(Sph sph, PetscReal *bytes, PetscReal *evaluations)
   PetscFunctionBegin;
   for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) doubles += arrays[k] != sph->zero;
   if (bytes) *bytes = (PetscReal)sph->cap * (doubles * sizeof(double) + 3.0 * sizeof(int)) + sph->backendbytes;
+  if (bytes && sph->omega) *bytes += 3.0 * sizeof(double) * (PetscReal)(sph->n - sph->nfluid);
   if (evaluations) *evaluations = sph->evaluations;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -116,6 +116,23 @@ SPH_INLINE double sph_shift_keep(double div, double dim)
   return keep < 0.0 ? 0.0 : (keep > 1.0 ? 1.0 : keep);
 }
 
+/*
+  Velocity that boundary marker a lends the viscous term, less its own: r (v_a + w x (<x> - x_a) - <v>), m/s. <v>, <x>: kernel
+  means of velocity and position over the fluid around; w: angular velocity of the wall (rad/s), so that the fluid is compared
+  with the wall's motion where the fluid is, and turns with the wall as one body without friction. Over a flat wall and r of
+  SphWallRatio() that is Adami, Hu, Adams, J. Comput. Phys. 231 (2012), Eq. 23, with the wall's velocity at the surface point
+  above the marker. Free slip (r < 0) takes <v> itself.
+*/
+SPH_INLINE void sph_wall_velocity(double r, const double va[3], const double mean[3], const double w[3], const double offset[3],
+                                  double dv[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    const double turn = r < 0.0 ? 0.0 : w[l] * offset[m] - w[m] * offset[l];
+    dv[k] = r * (va[k] + turn - mean[k]);
+  }
+}
+
 #if defined(SPHIMPL_H)
 /* The constants from the parameters of a run. */
 SPH_INLINE SphPairConst sph_pair_const(const SphParams *p)

@@ -90,6 +90,7 @@ PetscErrorCode SphMoveState(Sph sph, FrondState *s)
   PetscCall(MoveVector(sph, s, "boundary_acceleration", sph->ab));
   PetscCall(MoveArray(sph, s, "fluid/mass", sph->m));
   PetscCall(MoveArray(sph, s, "fluid/wall_ratio", sph->wallratio));
+  if (sph->omega) FrondMoveReal(s, "fluid/boundary_rotation", sph->omega, 3 * (sph->n - sph->nfluid));
   FrondMoveInt32(s, "fluid/group", sph->group, sph->n);
   FrondMoveInt32(s, "fluid/id", sph->id, sph->n);
   FrondMoveInt32(s, "fluid/slot", sph->slot, sph->n);
