@@ -213,8 +213,9 @@ def damaged():
     for bit in bits:
         bad = bytearray(good)
         bad[bit // 8] ^= 1 << (bit % 8)
-        refused(bytes(bad), ["damaged|no checkpoint|newer"], "bit %d" % bit)
-    refused(good.replace(b"frond-checkpoint 1", b"frond-checkpoint 2", 1), ["format 2", "newer", "up to 1"], "newer")
+        refused(bytes(bad), ["damaged|no checkpoint|newer|older"], "bit %d" % bit)
+    refused(good.replace(b"frond-checkpoint 2", b"frond-checkpoint 3", 1), ["format 3", "newer", "reads format 2"], "newer")
+    refused(good.replace(b"frond-checkpoint 2", b"frond-checkpoint 1", 1), ["format 1", "older", "reads format 2"], "older")
     refused(open(frond.path("four", "frame_00000.h5"), "rb").read(), ["no checkpoint"], "a frame")
     refused(b"%PDF-1.4 something else" * 100, ["no checkpoint"], "another program's file")
     with open(last, "wb") as f:

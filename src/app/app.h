@@ -212,7 +212,7 @@ PetscErrorCode AppStateDestroy(AppState *s);
 PetscErrorCode AppMoveState(App *app, FrondState *s);
 
 /* checkpoint.c: checkpoint files. */
-#define APP_CHECKPOINT_FORMAT 1
+#define APP_CHECKPOINT_FORMAT 2
 typedef struct {
   PetscInt step;
   PetscReal t;   /* s */

@@ -227,7 +227,9 @@ static void examine(const char file[], CheckpointInfo *info, size_t len, char wr
   if (strncmp(head, MAGIC, strlen(MAGIC)) || sscanf(head + strlen(MAGIC), "%d", &format) != 1)
     snprintf(wrong, len, "is no checkpoint of frond");
   else if (format > APP_CHECKPOINT_FORMAT)
-    snprintf(wrong, len, "is of format %d, from a newer frond; this one reads formats up to %d", format, APP_CHECKPOINT_FORMAT);
+    snprintf(wrong, len, "is of format %d, from a newer frond; this one reads format %d", format, APP_CHECKPOINT_FORMAT);
+  else if (format < APP_CHECKPOINT_FORMAT)
+    snprintf(wrong, len, "is of format %d, from an older frond; this one reads format %d", format, APP_CHECKPOINT_FORMAT);
   else if (!good || sscanf(head, MAGIC "%d\nstep %lld time %lg bytes %lld\ncrc32 %x\n", &format, &step, &t, &size, &want) != 5)
     snprintf(wrong, len, "is damaged: its head is not whole");
   else if (st.st_size != size)
@@ -238,8 +240,7 @@ static void examine(const char file[], CheckpointInfo *info, size_t len, char wr
     info->step = (PetscInt)step;
     info->t = (PetscReal)t;
     head_lines(info, size, crc, again);
-    if (format != APP_CHECKPOINT_FORMAT || memcmp(head, again, HEAD_BYTES))
-      snprintf(wrong, len, "is damaged: its checksum is wrong");
+    if (memcmp(head, again, HEAD_BYTES)) snprintf(wrong, len, "is damaged: its checksum is wrong");
   }
   close(fd);
 }
