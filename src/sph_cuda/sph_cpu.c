@@ -244,6 +244,9 @@ static PetscErrorCode Reinit_CPU(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Groups of fewer markers are moved and read by one thread: to wake the others takes as long as some thousand markers. */
+#define SERIAL 2048
+
 static PetscErrorCode Motion_CPU(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
   const PetscInt first = sph->groupstart[group], last = sph->groupstart[group + 1];
@@ -251,7 +254,7 @@ static PetscErrorCode Motion_CPU(Sph sph, PetscInt group, const PetscReal *x, co
   double far2 = 0.0;
 
   PetscFunctionBegin;
-#pragma omp parallel for schedule(static) reduction(max : far2)
+#pragma omp parallel for schedule(static) reduction(max : far2) if (last - first >= SERIAL)
   for (PetscInt id = first; id < last; id++) {
     const int i = sph->slot[id];
     const PetscInt o = 3 * (id - first);
@@ -275,7 +278,7 @@ static PetscErrorCode Force_CPU(Sph sph, PetscInt group, PetscReal *f)
   const PetscInt first = sph->groupstart[group], last = sph->groupstart[group + 1];
 
   PetscFunctionBegin;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (last - first >= SERIAL)
   for (PetscInt id = first; id < last; id++) {
     const int i = sph->slot[id];
     for (int k = 0; k < 3; k++) f[3 * (id - first) + k] = sph->m[i] * sph->rate.a[k][i];
