@@ -138,6 +138,8 @@ base = apptest.SCENE
 for name, text, words, code in (
     ("tab.yaml", "time_end: 1\n\tsph: 2\n", ["tab.yaml", "not valid YAML", "line 2"], 1),
     ("open.yaml", base + "\nbodies: [ball\n", ["open.yaml", "not valid YAML", "line 3[0-9]"], 1),
+    ("nested.yaml", base + "\na: " + "[" * 200000 + "\n", ["nested.yaml", "line 3[0-9]", "64 brackets"], 1),
+    ("long.yaml", base + "\n# " + "x" * (1 << 20) + "\n", ["long.yaml", "longer than 1 MiB"], 3),
     ("text.yaml", "hello world\n", ["text.yaml", "not valid YAML|sets nothing"], 1),
     ("empty.yaml", "", ["empty.yaml", "sets nothing"], 1),
     ("novalue.yaml", base + "\nsph_gamma:\n", ["sph_gamma", "no value"], 1),

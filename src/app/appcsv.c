@@ -107,6 +107,29 @@ static PetscErrorCode add_row(const Csv *c, char line[], const char *const names
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Header and rows of an open file. */
+static PetscErrorCode read_lines(Csv *c, FILE *f, const char *const names[], AppTable *table)
+{
+  char line[LINE_MAX_CHARS];
+  PetscInt ncols = 0, alloc = 0;
+
+  PetscFunctionBegin;
+  while (names[ncols]) ncols++;
+  while (fgets(line, sizeof(line), f)) {
+    const size_t blanks = strspn(line, " \t\r\n");
+    c->line++;
+    PetscCheck(strchr(line, '\n') || feof(f), PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+               "'%s', line %" PetscInt_FMT ": longer than %d characters", c->file, c->line, LINE_MAX_CHARS - 2);
+    if (!line[blanks] || line[blanks] == '#') continue;
+    if (!c->ncols)
+      PetscCall(read_header(c, line, names));
+    else
+      PetscCall(add_row(c, line, names, ncols, &alloc, table));
+  }
+  PetscCheck(!ferror(f), PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "cannot read '%s': is it a folder?", c->file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   Table of the columns names[] (NULL at the end) over time from a file; it must reach from t = 0 to tend (s). value: n x columns,
   zero where the file lacks the column. Freed by AppTableDestroy().
@@ -114,27 +137,15 @@ static PetscErrorCode add_row(const Csv *c, char line[], const char *const names
 PetscErrorCode AppTableRead(const char file[], const char *const names[], PetscReal tend, AppTable *table)
 {
   Csv c = {.file = file};
-  char line[LINE_MAX_CHARS];
-  PetscInt ncols = 0, alloc = 0;
+  PetscErrorCode ierr;
   FILE *f = fopen(file, "r");
 
   PetscFunctionBegin;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot read '%s': %s", file, strerror(errno));
-  while (names[ncols]) ncols++;
   PetscCall(PetscMemzero(table, sizeof(*table)));
-  while (fgets(line, sizeof(line), f)) {
-    const size_t blanks = strspn(line, " \t\r\n");
-    c.line++;
-    PetscCheck(strchr(line, '\n') || feof(f), PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-               "'%s', line %" PetscInt_FMT ": longer than %d characters", file, c.line, LINE_MAX_CHARS - 2);
-    if (!line[blanks] || line[blanks] == '#') continue;
-    if (!c.ncols)
-      PetscCall(read_header(&c, line, names));
-    else
-      PetscCall(add_row(&c, line, names, ncols, &alloc, table));
-  }
-  PetscCheck(!ferror(f), PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "cannot read '%s': is it a folder?", file);
+  ierr = read_lines(&c, f, names, table);
   fclose(f);
+  PetscCall(ierr);
   PetscCheck(table->n > 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "'%s': holds no rows", file);
   PetscCheck(table->t[0] <= 0 && table->t[table->n - 1] >= tend * (1 - 1e-9), PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
              "'%s': times from %g to %g s do not cover the run, 0 to %g s", file, (double)table->t[0],

@@ -223,6 +223,9 @@ PetscErrorCode AppOptionsRead(const char prefix[], const char title[], PetscInt 
 
 /* --- scene files --------------------------------------------------------------------------------------------- */
 
+#define FILE_MAX (1 << 20) /* bytes */
+#define NESTED_MAX 64      /* brackets; YAML parsers need time of the square of it */
+
 static PetscErrorCode read_file(const char file[], char **text)
 {
   struct stat st;
@@ -233,7 +236,7 @@ static PetscErrorCode read_file(const char file[], char **text)
   PetscCheck(!stat(file, &st), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot read the scene file '%s': %s", file,
              strerror(errno));
   PetscCheck(!S_ISDIR(st.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot read the scene file '%s': it is a folder", file);
-  PetscCheck(st.st_size < (1 << 24), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot read the scene file '%s': longer than 16 MiB",
+  PetscCheck(st.st_size <= FILE_MAX, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot read the scene file '%s': longer than 1 MiB",
              file);
   f = fopen(file, "r");
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot read the scene file '%s': %s", file, strerror(errno));
@@ -242,6 +245,24 @@ static PetscErrorCode read_file(const char file[], char **text)
   fclose(f);
   (*text)[n] = 0;
   PetscCheck(strlen(*text) == n, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "scene file '%s' is not a text file", file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists inside lists, outside of comments. */
+static PetscErrorCode check_nesting(const char file[], const char text[])
+{
+  PetscInt depth = 0, line = 1;
+
+  PetscFunctionBegin;
+  for (const char *at = text; *at; at++) {
+    if (*at == '#') at += strcspn(at, "\n");
+    if (!*at) break;
+    line += *at == '\n';
+    if (*at == '[' || *at == '{') depth++;
+    if ((*at == ']' || *at == '}') && depth > 0) depth--;
+    PetscCheck(depth <= NESTED_MAX, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "scene file '%s', line %" PetscInt_FMT ": more than %d brackets inside one another", file, line, NESTED_MAX);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,19 +280,23 @@ static PetscErrorCode try_yaml(const char text[], PetscBool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define PARSED_MAX (1 << 20) /* bytes */
+
 /* The line after the longest beginning of the text that is valid YAML: where a malformed file goes wrong. */
 static PetscErrorCode bad_line(const char text[], PetscInt *line)
 {
   char *copy;
   PetscInt n = 0;
+  size_t parsed = 0;
 
   PetscFunctionBegin;
   *line = 1;
   PetscCall(PetscStrallocpy(text, &copy));
-  for (char *at = copy, *end; (end = strchr(at, '\n')) && n < 2000; at = end + 1) {
+  for (char *at = copy, *end; (end = strchr(at, '\n')) && n < 2000 && parsed < PARSED_MAX; at = end + 1) {
     char keep = end[1];
     PetscBool ok;
     n++;
+    parsed += (size_t)(end - copy);
     end[1] = 0;
     PetscCall(try_yaml(copy, &ok));
     end[1] = keep;
@@ -294,6 +319,7 @@ PetscErrorCode AppOptionsInsertFile(const char file[])
 
   PetscFunctionBegin;
   PetscCall(read_file(file, &text));
+  PetscCall(check_nesting(file, text));
   PetscCall(try_yaml(text, &ok));
   if (!ok) {
     PetscCall(bad_line(text, &line));

@@ -271,21 +271,21 @@ PetscErrorCode AppCheckpointNewest(const char dir[], const char not [], PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static int read_array(hid_t file, const char name[], AppState *s, CheckpointInfo *info)
+static int read_array(hid_t file, const char name[], hsize_t bytes, AppState *s, CheckpointInfo *info)
 {
   hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set), space = H5Dget_space(set);
   const hssize_t n = H5Sget_simple_extent_npoints(space);
   const size_t size = H5Tget_size(type);
   FrondStateType t = H5Tget_class(type) == H5T_FLOAT ? FROND_REAL64 : (size == 8 ? FROND_INT64 : FROND_INT32);
   void *data = NULL;
-  int err = n < 0;
+  int err = n < 0 || !size || (hsize_t)n > bytes / size; /* no array is larger than the file */
 
   if (!strcmp(name, "options")) {
     err = err || size != 1 || PetscMalloc((size_t)n + 1, &info->options);
     if (!err) info->options[n] = 0;
     if (!err && n) err = H5Dread(set, H5T_NATIVE_CHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, info->options) < 0;
   } else {
-    err = err || AppStateAdd(s, name, t, (size_t)n, &data);
+    err = err || (size != 4 && size != 8) || AppStateAdd(s, name, t, (size_t)n, &data);
     if (!err && n) err = H5Dread(set, memory_type(t), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
   }
   H5Sclose(space);
@@ -297,6 +297,7 @@ static int read_array(hid_t file, const char name[], AppState *s, CheckpointInfo
 typedef struct {
   AppState *s;
   CheckpointInfo *info;
+  hsize_t bytes; /* of the file */
 } Reading;
 
 #if H5_VERSION_GE(1, 12, 0)
@@ -310,14 +311,14 @@ typedef H5O_info_t ObjectInfo;
 static herr_t visit(hid_t file, const char *name, const ObjectInfo *object, void *ctx)
 {
   const Reading *r = (const Reading *)ctx;
-  return object->type == H5O_TYPE_DATASET ? read_array(file, name, r->s, r->info) : 0;
+  return object->type == H5O_TYPE_DATASET ? read_array(file, name, r->bytes, r->s, r->info) : 0;
 }
 
 /* Read a checkpoint into s and info (free info->options). Errors: PETSC_ERR_FILE_UNEXPECTED naming a good one nearby, if any. */
 PetscErrorCode AppCheckpointRead(const char file[], AppState *s, CheckpointInfo *info)
 {
   char wrong[256], dir[PETSC_MAX_PATH_LEN], other[PETSC_MAX_PATH_LEN + 300];
-  Reading r = {s, info};
+  Reading r = {s, info, 0};
   herr_t err;
   hid_t id;
 
@@ -340,7 +341,7 @@ PetscErrorCode AppCheckpointRead(const char file[], AppState *s, CheckpointInfo 
   AppStateBegin(s, FROND_STATE_SAVE);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   id = H5Fopen(file, H5F_ACC_RDONLY, H5P_DEFAULT);
-  err = id < 0 ? -1 : Visit(id, &r);
+  err = id < 0 || H5Fget_filesize(id, &r.bytes) < 0 ? -1 : Visit(id, &r);
   if (id >= 0) H5Fclose(id);
   PetscCheck(!err && info->options, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED, "restart: HDF5 cannot read '%s'", file);
   PetscFunctionReturn(PETSC_SUCCESS);
