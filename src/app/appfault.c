@@ -68,19 +68,21 @@ static PetscErrorCode poke_body(App *app, PetscReal value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The option -fault_nan: before the chosen step one value becomes fault_value, NaN by default. */
+/* The option -fault_nan: before the chosen step one value becomes fault_value, or NaN when that is 0 (current PETSc refuses NaN
+ * as the default of an option). */
 PetscErrorCode AppInjectFault(App *app)
 {
   const AppScene *s = &app->scene;
+  const PetscReal value = s->faultvalue != 0.0 ? s->faultvalue : (PetscReal)NAN;
 
   PetscFunctionBegin;
   if (s->faultstep < 0 || app->step != s->faultstep) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->faultfield == FAULT_BEAM_X || s->faultfield == FAULT_BEAM_V)
-    PetscCall(poke_beam(app, s->faultvalue));
+    PetscCall(poke_beam(app, value));
   else if (s->faultfield == FAULT_BODY_X || s->faultfield == FAULT_BODY_V)
-    PetscCall(poke_body(app, s->faultvalue));
+    PetscCall(poke_body(app, value));
   else
-    PetscCall(poke_fluid(app, s->faultvalue));
+    PetscCall(poke_fluid(app, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

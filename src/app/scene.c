@@ -143,7 +143,7 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
       {OPT_STRING, "fault_nan",
        "For tests: put NaN in field,number,step before that step (x|v|rho of a marker, beam_x|beam_v of a node, body_x|body_v)",
        fault, NULL, NULL},
-      {OPT_REAL, "fault_value", "For tests: the value that fault_nan puts in place of NaN", &s->faultvalue, NULL, NULL},
+      {OPT_REAL, "fault_value", "For tests: the value that fault_nan puts; 0: NaN", &s->faultvalue, NULL, NULL},
       {OPT_BOOL, "audit", "Balances of energy and angular momentum in the history: a sum over pairs for each row", &s->audit,
        NULL, NULL},
       {OPT_REAL, "audit_momentum", "Warn when the residual of the momentum exceeds this part of its largest term; -1: never",
@@ -400,7 +400,6 @@ PetscErrorCode AppSceneRead(AppScene *s, const char file[])
   s->progressevery = 1;
   s->checkpointevery = -1;
   s->checkpointkeep = 3;
-  s->faultvalue = (PetscReal)NAN;
   s->audit = PETSC_TRUE;
   s->auditmomentum = 1e-3;
   s->auditenergy = 0.2;
