@@ -3,7 +3,7 @@
 #define ANCF_COMMON_H
 
 #include "ancf.h"
-#include "testing.h"
+#include "testerror.h"
 #include <string.h>
 
 /* Seed Sect. 4: L = 1 m, d = 0.04 m, rho_s = 7200 kg/m^3, E = 20 MPa, along x, clamped at the origin. */
@@ -65,20 +65,6 @@ static inline PetscErrorCode TipHeights(Ancf ancf, PetscInt n, PetscReal tip[])
     tip[b] = e[6 * (first + s.elements) + 2];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PETSC_UNUSED static char test_message[2048]; /* of the last error caught */
-
-static inline PetscErrorCode TestCatch(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
-                                       PetscErrorType p, const char *mess, void *ctx)
-{
-  (void)comm;
-  (void)line;
-  (void)fun;
-  (void)file;
-  (void)ctx;
-  if (p == PETSC_ERROR_INITIAL && mess) snprintf(test_message, sizeof(test_message), "%s", mess);
-  return n;
 }
 
 /* The call must fail with this code, and its one-line message must name the word. */

@@ -7,7 +7,7 @@
 */
 #include "couple.h"
 #include "sphfill.h"
-#include "testing.h"
+#include "testerror.h"
 #if defined(CUDA_SHIM)
   #include "cuda_shim.h"
 #endif
@@ -326,30 +326,6 @@ static PetscErrorCode TestRollBack(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static char message[512];
-
-static PetscErrorCode Keep(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
-                           const char *mess, void *ctx)
-{
-  (void)comm;
-  (void)line;
-  (void)fun;
-  (void)file;
-  (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) (void)snprintf(message, sizeof(message), "%s", mess);
-  return n;
-}
-
-#define REFUSED(call, text)                                                                                                      \
-  do {                                                                                                                           \
-    PetscErrorCode err_;                                                                                                         \
-    message[0] = 0;                                                                                                              \
-    PetscCall(PetscPushErrorHandler(Keep, NULL));                                                                                \
-    err_ = call;                                                                                                                 \
-    PetscCall(PetscPopErrorHandler());                                                                                           \
-    TEST(err_ &&strstr(message, text), "%s: error %d, %s", #call, (int)err_, message);                                           \
-  } while (0)
-
 static PetscErrorCode TestRefusals(void)
 {
   PetscReal x[3] = {0.1, 0.1, 0.1}, volume = 8e-6, depth = 0.0, load[6];
@@ -360,24 +336,24 @@ static PetscErrorCode TestRefusals(void)
 
   PetscFunctionBegin;
   PetscCall(MakeFluid(type, SPH_PRECISION_SINGLE, &sph));
-  REFUSED(SphSetGroupLink(sph, 0, &body), "boundary group 0: must be in [0, 0)");
+  TEST_REFUSED(SphSetGroupLink(sph, 0, &body), "boundary group 0: must be in [0, 0)");
   PetscCall(SphAddBoundary(sph, 1, (PetscReal[3]){0.1, 0.08, 0.1}, NULL, &volume, &depth, &group));
-  REFUSED(SphSetGroupLink(sph, group, &bad), "node 3 must be in [0, 1)");
+  TEST_REFUSED(SphSetGroupLink(sph, group, &bad), "node 3 must be in [0, 1)");
   node = 0;
   section = 1;
-  REFUSED(SphSetGroupLink(sph, group, &bad), "section 1 must be in [0, 1)");
+  TEST_REFUSED(SphSetGroupLink(sph, group, &bad), "section 1 must be in [0, 1)");
   bad.nsections = 0;
-  REFUSED(SphSetGroupLink(sph, group, &bad), "nsections = 0");
-  REFUSED(SphSetGroupState(sph, group, x), "must come after SphSetUp()");
+  TEST_REFUSED(SphSetGroupLink(sph, group, &bad), "nsections = 0");
+  TEST_REFUSED(SphSetGroupState(sph, group, x), "must come after SphSetUp()");
   PetscCall(SphSetGroupLink(sph, group, &body));
-  REFUSED(SphSetGroupLink(sph, group, &body), "is linked already");
+  TEST_REFUSED(SphSetGroupLink(sph, group, &body), "is linked already");
   PetscCall(SphSetUp(sph));
-  REFUSED(SphSetBoundaryMotion(sph, group, x, x, NULL), "is linked");
-  REFUSED(SphGetGroupLoad(sph, group, load, NULL), "SphSetGroupState() comes first");
+  TEST_REFUSED(SphSetBoundaryMotion(sph, group, x, x, NULL), "is linked");
+  TEST_REFUSED(SphGetGroupLoad(sph, group, load, NULL), "SphSetGroupState() comes first");
   PetscCall(SphDestroy(&sph));
   PetscCall(Make(type, SPH_PRECISION_SINGLE, COUPLE_TRANSFER_GENERALISED, &s));
-  REFUSED(CoupleSetIterations(s.couple, 5, 1e-4, 0.5), "couple_iterations = 5: must be set before CoupleSetUp()");
-  REFUSED(CoupleSetTransfer(s.couple, COUPLE_TRANSFER_MARKERS), "couple_transfer = markers: cannot change");
+  TEST_REFUSED(CoupleSetIterations(s.couple, 5, 1e-4, 0.5), "couple_iterations = 5: must be set before CoupleSetUp()");
+  TEST_REFUSED(CoupleSetTransfer(s.couple, COUPLE_TRANSFER_MARKERS), "couple_transfer = markers: cannot change");
   PetscCall(Destroy(&s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,7 +4,7 @@
   a wall and on a ball without passing through, the cell grid against all pairs, determinism, refusals.
 */
 #include "couple.h"
-#include "testing.h"
+#include "testerror.h"
 #include <string.h>
 
 static const char help[] = "Short-range forces of beams.\n";
@@ -493,20 +493,9 @@ static PetscErrorCode TestGrid(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A call that must fail with the words in its message. */
-static char message[1024];
-static PetscErrorCode Keep(MPI_Comm comm, int line, const char *f, const char *file, PetscErrorCode n, PetscErrorType type,
-                           const char *text, void *ctx)
-{
-  (void)comm, (void)line, (void)f, (void)file, (void)ctx;
-  if (type == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", text);
-  return n;
-}
-
 static PetscErrorCode TestRefusals(void)
 {
   const PetscReal period[3] = {.15, 0., 0.}, bad[3] = {-1., 0., 0.}, zero[3] = {0., 0., 0.};
-  PetscErrorCode ierr;
   ShortRange p;
   CoupleShort sr;
   Ancf ancf;
@@ -514,29 +503,21 @@ static PetscErrorCode TestRefusals(void)
   PetscFunctionBegin;
   PetscCall(ShortRangeInit(&p));
   p.viscosity = 1., p.cutoff = .01, p.roughness = 1e-3;
-#define REFUSED(call, words)                                                                                                     \
-  do {                                                                                                                           \
-    message[0] = 0;                                                                                                              \
-    PetscCall(PetscPushErrorHandler(Keep, NULL));                                                                                \
-    ierr = call;                                                                                                                 \
-    PetscCall(PetscPopErrorHandler());                                                                                           \
-    TEST(ierr &&strstr(message, words), "'%s' does not name %s", message, words);                                                \
-  } while (0)
   PetscCall(Cross(1., -.005, 0., 1e6, &ancf));
   PetscCall(MakeShort(ancf, NULL, &p, 8, &sr));
-  REFUSED(CoupleShortApply(sr, 1.), "CoupleShortSetUp()");
-  REFUSED(CoupleShortSetSamples(sr, 1), "couple_shortrange_samples = 1");
-  REFUSED(CoupleShortSetPeriod(sr, bad), "-1");
-  REFUSED(CoupleShortAddWall(sr, zero, zero), "normal");
-  REFUSED(CoupleShortSetUp(sr), "beam 0 and beam 1 overlap by 0.0049");
+  TEST_REFUSED(CoupleShortApply(sr, 1.), "CoupleShortSetUp()");
+  TEST_REFUSED(CoupleShortSetSamples(sr, 1), "couple_shortrange_samples = 1");
+  TEST_REFUSED(CoupleShortSetPeriod(sr, bad), "-1");
+  TEST_REFUSED(CoupleShortAddWall(sr, zero, zero), "normal");
+  TEST_REFUSED(CoupleShortSetUp(sr), "beam 0 and beam 1 overlap by 0.0049");
   PetscCall(CoupleShortDestroy(&sr));
   PetscCall(MakeShort(ancf, NULL, &p, 8, &sr));
   PetscCall(CoupleShortSetPeriod(sr, period));
-  REFUSED(CoupleShortSetUp(sr), "too short");
+  TEST_REFUSED(CoupleShortSetUp(sr), "too short");
   PetscCall(CoupleShortDestroy(&sr));
   p.cutoff = 1e-4;
   PetscCall(CoupleShortCreate(PETSC_COMM_SELF, ancf, NULL, &sr));
-  REFUSED(CoupleShortSetParameters(sr, &p), "cutoff");
+  TEST_REFUSED(CoupleShortSetParameters(sr, &p), "cutoff");
   PetscCall(CoupleShortDestroy(&sr));
   PetscCall(AncfDestroy(&ancf));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -7,7 +7,7 @@
 */
 #include "cuda_shim.h"
 #include "sph_conformance.h"
-#include "testing.h"
+#include "testerror.h"
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -54,20 +54,6 @@ static const Scene leap = {"3d verlet",
                            0.0,
                            7.0,
                            1.2};
-
-static char message[1024];
-
-static PetscErrorCode Keep(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p,
-                           const char *mess, void *ctx)
-{
-  (void)comm;
-  (void)line;
-  (void)fun;
-  (void)file;
-  (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) (void)snprintf(message, sizeof(message), "%s", mess);
-  return n;
-}
 
 static PetscErrorCode Dump(Sph sph, double **out, PetscInt *size)
 {
@@ -202,11 +188,11 @@ static PetscErrorCode TestMemory(void)
   PetscFunctionBegin;
   cudaShimSetMemory(100000);
   PetscCall(SceneCreate(&cube, SPHCUDA, SPH_PRECISION_SINGLE, &sph));
-  PetscCall(PetscPushErrorHandler(Keep, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   err = SphSetUp(sph);
   PetscCall(PetscPopErrorHandler());
   TEST(err == PETSC_ERR_MEM, "too little device memory gave error %d", (int)err);
-  TEST(strstr(message, "bytes of device memory, 100000 of 100000 are free"), "the message is: %s", message);
+  TEST(strstr(test_message, "bytes of device memory, 100000 of 100000 are free"), "the message is: %s", test_message);
   TEST(cudaShimGetCounts().mallocs == mallocs, "memory was allocated before it was found too small");
   PetscCall(SphDestroy(&sph));
   cudaShimSetMemory((size_t)1 << 30);
@@ -222,10 +208,11 @@ static PetscErrorCode TestAbsent(void)
   PetscFunctionBegin;
   cudaShimSetDeviceCount(0);
   PetscCall(SceneCreate(&small, SPHCUDA, SPH_PRECISION_SINGLE, &sph));
-  PetscCall(PetscPushErrorHandler(Keep, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   err = SphSetUp(sph);
   PetscCall(PetscPopErrorHandler());
-  TEST(err == PETSC_ERR_SUP_SYS && strstr(message, "no CUDA device"), "without a device: error %d, %s", (int)err, message);
+  TEST(err == PETSC_ERR_SUP_SYS && strstr(test_message, "no CUDA device"), "without a device: error %d, %s", (int)err,
+       test_message);
   PetscCall(SphDestroy(&sph));
   PetscCall(SceneCreate(&small, SPHAUTO, SPH_PRECISION_SINGLE, &sph));
   PetscCall(SphSetUp(sph));
@@ -250,8 +237,8 @@ static PetscErrorCode RunFailing(SceneLink link, long fail, int error, PetscErro
   PetscFunctionBegin;
   PetscCall(SceneCreate(&small, SPHCUDA, SPH_PRECISION_SINGLE, &sph));
   PetscCall(SceneSetLink(sph, &small, link));
-  message[0] = 0;
-  PetscCall(PetscPushErrorHandler(Keep, NULL));
+  test_message[0] = 0;
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   cudaShimFailCall(fail, error);
   *err = SphSetUp(sph);
   for (int step = 0; step < 2 && !*err; step++) {
@@ -277,15 +264,15 @@ static PetscErrorCode TestEveryFailure(SceneLink link)
   for (k = 0; err; k++) { /* until the run is over before call k */
     PetscCall(RunFailing(link, k, LAUNCH_FAILURE, &err));
     if (!err) break;
-    wrong += !(k == 0 ? strstr(message, "no CUDA device") : strstr(message, "cudaErrorLaunchFailure")) ||
-             !(k == 0 || strchr(message, '('));
+    wrong += !(k == 0 ? strstr(test_message, "no CUDA device") : strstr(test_message, "cudaErrorLaunchFailure")) ||
+             !(k == 0 || strchr(test_message, '('));
     leaks += cudaShimGetCounts().live;
   }
-  TEST(k > 100 && k < 2000 && wrong == 0, "%ld of %ld failing calls gave no clear error (the last: %s)", wrong, k, message);
+  TEST(k > 100 && k < 2000 && wrong == 0, "%ld of %ld failing calls gave no clear error (the last: %s)", wrong, k, test_message);
   TEST(leaks == 0, "%ld objects were not freed after failures", leaks);
   printf("%ld CUDA calls failed one after another\n", k);
   PetscCall(RunFailing(link, 100, ECC_UNCORRECTABLE, &err));
-  TEST(err && strstr(message, "absent or lost"), "a lost device: %s", message);
+  TEST(err && strstr(test_message, "absent or lost"), "a lost device: %s", test_message);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,6 +9,7 @@
   3. A host that cannot be: one clear error each.
 */
 #include "host_scene.h"
+#include "testerror.h"
 
 /* ---- 1: a host that owns an Ancf ---- */
 
@@ -311,16 +312,6 @@ static PetscErrorCode TestTransfer(PetscInt dim, PetscBool line)
 
 /* ---- 3: bad input ---- */
 
-static char said[512];
-
-static PetscErrorCode Remember(MPI_Comm comm, int line, const char *func, const char *file, PetscErrorCode n, PetscErrorType p,
-                               const char *mess, void *ctx)
-{
-  (void)comm, (void)line, (void)func, (void)file, (void)ctx;
-  if (p == PETSC_ERROR_INITIAL) snprintf(said, sizeof(said), "%s", mess ? mess : "");
-  return n;
-}
-
 static PetscErrorCode TestRefused(void)
 {
   const CoupleHostOps ops = {.getstate = GetState_Cloud, .advance = Advance_Cloud};
@@ -342,7 +333,6 @@ static PetscErrorCode TestRefused(void)
     CoupleHostSpec spec;
     CoupleHostOps o = ops;
     CoupleSurface s = NULL;
-    PetscErrorCode ierr;
     Fill(3, PETSC_TRUE, r, &spec);
     Shake(3, PETSC_TRUE, &c);
     if (bad == 0) r->node[5] = 9;
@@ -352,11 +342,7 @@ static PetscErrorCode TestRefused(void)
     if (bad == 4) r->section[0] = 4;
     if (bad == 5) PetscCall(PetscArrayzero(c.q[0], c.n));
     if (bad == 6) o.advance = NULL;
-    said[0] = 0;
-    PetscCall(PetscPushErrorHandler(Remember, NULL));
-    ierr = CoupleSurfaceCreateHost(PETSC_COMM_SELF, "cloud", &spec, &o, &c, &s);
-    PetscCall(PetscPopErrorHandler());
-    TEST(ierr && strstr(said, wanted[bad]), "wanted an error about '%s', got '%s'", wanted[bad], said);
+    TEST_REFUSED(CoupleSurfaceCreateHost(PETSC_COMM_SELF, "cloud", &spec, &o, &c, &s), wanted[bad]);
   }
   for (int k = 0; k < 3; k++) PetscCall(PetscFree(c.q[k]));
   PetscCall(PetscFree(r));

@@ -429,7 +429,7 @@ static PetscErrorCode TestWall(void)
   PetscCall(RigidAddBody(r, &s, NULL));
   PetscCall(RigidAddWall(r, x, n));
   PetscCall(RigidSetUp(r));
-  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   Refused(RigidCheckOverlap(r, .1), "body in a wall", "body 0 (sphere) overlaps the wall", "by 0.25");
   Refused(RigidAddWall(r, x, zero), "a wall without normal", "RigidAddWall()", "longer than 0");
   PetscCall(PetscPopErrorHandler());
@@ -527,7 +527,7 @@ static PetscErrorCode TestBadInput(void)
   PetscCall(ShortRangeInit(&good));
   good.viscosity = 1., good.cutoff = .5, good.roughness = .125, good.modulus = 1.;
   PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
-  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
 #define REFUSE(change, a, b)                                                                                                     \
   do {                                                                                                                           \
     p = good;                                                                                                                    \

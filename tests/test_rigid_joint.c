@@ -654,7 +654,7 @@ static PetscErrorCode TestBadInput(void)
   good.a = 0;
   good.axis[2] = 1.;
   PetscCall(RigidAddJoint(r, &good, NULL));
-  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   REFUSE(s.b = 0, "joint 1", "body 0 to itself");
   REFUSE(s.a = RIGID_GROUND, "joint 1", "itself");
   REFUSE(s.a = 2, "a = 2", "2 bodies");

@@ -237,7 +237,7 @@ static PetscErrorCode TestBadInput(void)
 
   PetscFunctionBegin;
   PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
-  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   REFUSE(s.trunks = 0, "trunks = 0", ">= 1");
   REFUSE(s.end[0] = 0., "length = 0", "> 0");
   REFUSE(s.section[0] = 0., "section[0] = 0", "> 0");

@@ -450,7 +450,7 @@ static PetscErrorCode TestBadInput(const char dir[])
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/bad.stl", dir));
   BoxCorners(a, q, c, x);
   memcpy(f, boxfacets, sizeof(f));
-  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   Refused(RigidGeometryCreateMesh(PETSC_COMM_SELF, 8, x, 11, f, &g), "open box", "not closed: edge (0.625,", "1 facet(s)");
   f[30] = boxfacets[31], f[31] = boxfacets[30];
   Refused(RigidGeometryCreateMesh(PETSC_COMM_SELF, 8, x, 12, f, &g), "turned facet", "not oriented: facets", "10");

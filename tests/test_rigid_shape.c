@@ -287,7 +287,7 @@ static PetscErrorCode TestBadInput(void)
   const PetscReal nan = (PetscReal)NAN, badg[3] = {0., nan, 0.}, F[3] = {nan, 0., 0.};
 
   PetscFunctionBegin;
-  PetscCall(PetscPushErrorHandler(Catch, NULL));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
   REFUSE(3, s.density = 0., "body 1", "density = 0");
   REFUSE(3, s.density = -5., "body 1", "density = -5");
   REFUSE(3, s.density = nan, "body 1", "density");

@@ -46,17 +46,21 @@ PetscErrorCode CoupleLoadsBegin(Couple c, PetscReal dt)
 
 PetscErrorCode CoupleLoadsEnd(Couple c)
 {
+  PetscReal dt = c->dt;
+
   PetscFunctionBegin;
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
     if (s->surface->held) continue;
-    if (s->linked) c->dt = 0.0; /* no history */
-    if (s->linked) break;
+    if (s->linked) {
+      dt = 0.0; /* no history of the markers that the fluid moves by itself */
+      continue;
+    }
     PetscCall(PetscArraycpy(s->alast[1], s->alast[0], 3 * s->n));
     for (PetscInt j = 0; j < 3 * s->n; j++) s->alast[0][j] = (s->v[j] - s->vstart[j]) / c->dt;
   }
   c->dtlast[1] = c->dtlast[0];
-  c->dtlast[0] = c->dt;
+  c->dtlast[0] = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
