@@ -32,6 +32,7 @@ bad("-beam_rod_diameter 0.01", "rod", "diameter|thin", r"0\.01", r"0\.04")
 bad("-beam_rod_EI -1e3", "beam_rod_EI", "positive")
 bad("-beam_rod_curvature 1", r"normal = \(0\.?, 0\.?, 0\.?\)", "plane")
 bad("-beam_rod_pretension nan", "pretension")
+bad("-beam_rod_pretension -1e12", "pretension", "EA")
 bad("-beam_rod_inner 0.06", "inner = 0.06", "0.06\\)")
 bad("-beam_rod_width 0.1", "width = 0.1", "round")
 

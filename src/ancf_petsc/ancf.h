@@ -37,7 +37,7 @@ typedef struct {
   PetscReal EA, EI, rhoA;                 /* overrides, N, N m^2, kg/m; PETSC_DECIDE (-1): derived from d, E, rho_s */
   PetscReal inner;                        /* inner diameter of a tube, m; default 0 */
   PetscReal width, thickness;             /* rectangle: along the normal and across, m; default 0: none; diameter may be 0 then */
-  PetscReal pretension;                   /* axial force in the initial shape, N; default 0 */
+  PetscReal pretension;                   /* axial force in the initial shape, N, within +-EA; default 0 */
   PetscReal curvature, normal[3]; /* the axis is an arc from start to end, free of bending: 1/m, turning about the normal; a
                                              normal, not zero, declares that the beam moves in the plane across it, and refuses
                                      other motion. A rectangle that is no square needs it: the element carries one EI */

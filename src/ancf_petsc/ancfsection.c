@@ -87,6 +87,9 @@ PetscErrorCode AncfBeamSection(Ancf ancf, AncfBeam *beam)
   beam->EI = s->EI == PETSC_DECIDE ? s->young * I2 : s->EI;
   beam->rhoA = s->rhoA == PETSC_DECIDE ? s->density * A : s->rhoA;
   PetscCall(AncfCheckPositive(ancf, "EA", beam->EA, "N"));
+  PetscCheck(PetscAbsReal(s->pretension) < beam->EA, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": pretension = %g N must be within +-%g N, EA: the strain of the initial shape stays below 1",
+             ancf->nbeams, (double)s->pretension, (double)beam->EA);
   PetscCall(AncfCheckPositive(ancf, "EI", beam->EI, "N m^2"));
   PetscCall(AncfCheckPositive(ancf, "rhoA", beam->rhoA, "kg/m"));
   PetscCall(AncfCheckNotNegative(ancf, "axialdamping", s->axialdamping, "s"));
