@@ -296,7 +296,7 @@ FROND_EXTERN PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscR
 FROND_EXTERN PetscErrorCode AncfGetReactions(Ancf ancf, PetscReal f[]);
 /* f: 3, force of all supports on the beams, N: the residual of the equations of motion over supported positions. */
 FROND_EXTERN PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3]);
-/* f: 3, gravity less buoyancy on all beams, N. */
+/* f: 3, gravity less buoyancy and the permanent point and line loads on all beams, N. */
 FROND_EXTERN PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3]);
 /*
   Counters since AncfSetUp(), the largest over the groups of beams; each output may be NULL. steps: TS steps. newton: Newton

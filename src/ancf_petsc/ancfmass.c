@@ -203,6 +203,6 @@ PetscErrorCode AncfGetWeight(Ancf ancf, PetscReal f[3])
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetWeight: call AncfSetUp() first");
   f[0] = f[1] = f[2] = 0;
   for (PetscInt j = 0; j < ancf->nnodes; j++)
-    for (PetscInt c = 0; c < 3; c++) f[c] += ancf->weight[6 * j + c];
+    for (PetscInt c = 0; c < 3; c++) f[c] += ancf->steady[6 * j + c];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,6 +54,8 @@ typedef struct {
   char name[APP_NAME_LEN];
   AncfBeamSpec spec;
   char mesh[PETSC_MAX_PATH_LEN], group[PETSC_MAX_PATH_LEN]; /* Gmsh file and physical name of its axis; empty: none, the name */
+  PetscReal pointload[3], pointat, lineload[3];             /* N, fraction of the length, N/m */
+  PetscReal moment[2][3], ramp;                             /* at its ends, N m; s */
 } SceneBeam;
 typedef struct {
   char name[APP_NAME_LEN];
@@ -171,8 +173,9 @@ typedef struct {
   PetscInt dim, nsurfaces;
   AppSurface *surfaces;
   PetscInt nfluid, nboundary;
-  Rigid mover[6]; /* prescribed motion of each wall that moves bodily, else NULL */
-  PetscReal t;    /* time, s */
+  Rigid mover[6];               /* prescribed motion of each wall that moves bodily, else NULL */
+  PetscReal loadramp, loadtime; /* when all beams have all of their loads, s; time of those that they have */
+  PetscReal t;                  /* time, s */
   PetscInt step;
 } App;
 PetscErrorCode AppBuild(App *app);
@@ -247,6 +250,11 @@ typedef struct {
 } AppMesh;
 PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam);
 PetscErrorCode AppMeshDestroy(AppMesh *mesh);
+
+/* sceneload.c: permanent loads of beams; power: of the moments at their ends now, W. */
+PetscErrorCode AppBuildBeamLoads(App *app);
+PetscErrorCode AppUpdateBeamLoads(App *app);
+PetscErrorCode AppBeamMomentPower(App *app, PetscReal *power);
 
 /* scenelink.c: links between nodes of beams. */
 PetscErrorCode AppSceneReadLinks(AppScene *scene);

@@ -3,7 +3,7 @@
 
   Energies of fluid, beams and bodies are balanced one by one, so that a residual tells where it arises:
     fluid   kinetic + compression - work of the body force + viscous heat + work on all surfaces
-    beams   kinetic + elastic + potential - work of the fluid + energy that damping took
+    beams   kinetic + elastic + potential - work of the fluid + energy that damping took - work of moments at their ends
     bodies  kinetic + potential + springs of joints - work of the fluid
   each less its value at the first row. Works of the fluid are sums over all steps; heat, body force and damping are sums of
   trapezoids over the rows. docs/output.md says what the residuals hold.
@@ -55,7 +55,12 @@ static PetscErrorCode get_rates(App *app, AppAudit *a, const SphSums *sums, Pets
 
   PetscFunctionBegin;
   for (int k = 0; k < AUDIT_INTEGRALS; k++) rate[k] = 0;
-  if (app->ancf) PetscCall(AncfGetDissipation(app->ancf, &rate[AUDIT_DAMPING]));
+  if (app->ancf) {
+    PetscReal power;
+    PetscCall(AncfGetDissipation(app->ancf, &rate[AUDIT_DAMPING]));
+    PetscCall(AppBeamMomentPower(app, &power));
+    rate[AUDIT_DAMPING] -= power;
+  }
   if (!app->sph) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SphGetAudit(app->sph, &audit));
   PetscCall(SphGetBodyForce(app->sph, f));
@@ -137,7 +142,7 @@ static PetscErrorCode is_closed(App *app, int term, const AppAudit *a, PetscBool
   }
   *closed = PETSC_TRUE;
   if (term == AUDIT_MOMENTUM || term == AUDIT_FLUID) *closed = (PetscBool)(a->left == 0);
-  if (term == AUDIT_BEAMS) *closed = free;
+  if (term == AUDIT_BEAMS) *closed = (PetscBool)(free && app->loadramp == 0);
   if (term != AUDIT_BODIES) PetscFunctionReturn(PETSC_SUCCESS);
   *closed = (PetscBool)(free && s->nlumped == 0 && s->njoints == 0);
   for (PetscInt b = 0; b < s->nbodies; b++) *closed = (PetscBool)(*closed && s->bodies[b].spec.motion != RIGID_PRESCRIBED);
@@ -227,7 +232,8 @@ PetscErrorCode AppAuditPut(App *app, const AppAudit *a, AppPut put, AppHistory h
   if (!app->scene.audit) PetscFunctionReturn(PETSC_SUCCESS);
   if (app->sph) PetscCall(put_fluid(app, a, put, h));
   if (app->ancf) {
-    PetscCall(put(h, "beams_damped", J, "energy that damping took from the beams", a->integral[AUDIT_DAMPING]));
+    PetscCall(put(h, "beams_damped", J, "energy that damping took from the beams, less the work of moments at their ends",
+                  a->integral[AUDIT_DAMPING]));
     PetscCall(put(h, "beams_energy_residual", J, "energy of the beams - initial - what they received", a->residual[AUDIT_BEAMS]));
   }
   if (app->rigid)

@@ -60,6 +60,7 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
   PetscCall(AppBuildLinks(app));
   PetscCall(AncfSetFromOptions(app->ancf));
   PetscCall(AppSetUpBeams(app));
+  PetscCall(AppBuildBeamLoads(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -296,6 +297,7 @@ PetscErrorCode AppStep(App *app, PetscReal tmax, PetscReal *dt)
   PetscReal t;
 
   PetscFunctionBegin;
+  PetscCall(AppUpdateBeamLoads(app));
   if (app->couple) {
     PetscCall(CoupleStep(app->couple, tmax, dt));
     PetscCall(CoupleGetTime(app->couple, &app->t, &app->step));

@@ -202,6 +202,14 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], SceneBe
       {OPT_VEC, "normal", "Axis that a curved beam turns about; the beam moves in the plane across, other motion is refused",
        spec->normal, NULL, &set[4]},
       {OPT_VEC, "velocity", "Initial velocity, m/s", spec->velocity, NULL, NULL},
+      {OPT_VEC, "point_load", "Permanent force of fixed direction at one point, N; 2D: N/m", beam->pointload, NULL, NULL},
+      {OPT_REAL, "point_load_at", "Where it acts, as a fraction of the length from the start", &beam->pointat, NULL, NULL},
+      {OPT_VEC, "line_load", "Permanent load of fixed direction per length of the unstrained axis, N/m; 2D: N/m^2",
+       beam->lineload, NULL, NULL},
+      {OPT_VEC, "moment0", "Moment at the first end, across the beam, following it as it bends about this axis, N m; 2D: N",
+       beam->moment[0], NULL, NULL},
+      {OPT_VEC, "moment1", "Moment at the last end, N m; 2D: N", beam->moment[1], NULL, NULL},
+      {OPT_REAL, "load_ramp", "Time over which these loads come up linearly from 0, s (0: at once)", &beam->ramp, NULL, NULL},
       {OPT_STRING, "mesh", "Gmsh file whose lines give start, end, elements, curvature and normal", beam->mesh, NULL, NULL},
       {OPT_STRING, "group", "Physical name of the lines in the mesh (default: the beam's name)", beam->group, NULL, NULL},
       {OPT_CHOICE, "end0", "Support of the first end", &end0, ends, NULL},
@@ -269,6 +277,7 @@ static PetscErrorCode read_beams(AppScene *s, const AppNames *names, const char 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(&all, sizeof(all)));
   PetscCall(AncfBeamSpecInit(&all.spec));
+  all.pointat = 1;
   if (names->n || help) PetscCall(read_beam("beam_", "Beams: the same for all; -beam_<name>_... for one", &all, allset));
   for (PetscInt i = 0; i < names->n; i++) {
     PetscBool set[5];
