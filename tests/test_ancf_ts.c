@@ -694,6 +694,65 @@ static PetscErrorCode TestFailures(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Two beams, the second driven sideways, with every term of the equations of motion; theirs: stages by TSALPHA2's own operations.
+ */
+static PetscErrorCode StageRun(const char options[], PetscBool theirs, PetscReal e[60], PetscReal v[60], PetscReal A[60])
+{
+  const PetscReal g[3] = {0, 0, -9.81}, *p[3];
+  AncfBeamSpec s;
+  Ancf a;
+  TS ts;
+
+  PetscFunctionBegin;
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+  PetscCall(SeedSpec(4, &s));
+  PetscCall(AncfAddBeam(a, &s, NULL));
+  s.start[1] = s.end[1] = 1;
+  PetscCall(AncfAddBeam(a, &s, NULL));
+  PetscCall(AncfSetGravity(a, g));
+  if (theirs) PetscCall(AncfGetTS(a, &ts));
+  PetscCall(SetUpWith(a, options, NULL));
+  for (int k = 0; k < 20; k++) {
+    const PetscReal t = 1e-3 * k, me[6] = {0, 1 + 5 * t * t, 0, 1}, mv[6] = {0, 10 * t}, ma[6] = {0, 10};
+    PetscReal *load;
+
+    PetscCall(AncfSetNodeMotion(a, 1, 0, me, mv, ma));
+    PetscCall(AncfGetLoads(a, &load));
+    load[6 * 4 + 1] = 10 * t;
+    PetscCall(AncfGetLoadsEnd(a, &load));
+    load[6 * 4 + 1] = 10 * t + 1e-2;
+    PetscCall(AncfAdvance(a, t + 1e-3));
+  }
+  PetscCall(AncfGetState(a, NULL, &p[0], &p[1], NULL));
+  PetscCall(AncfGetHistory(a, &p[2]));
+  PetscCall(PetscArraycpy(e, p[0], 60));
+  PetscCall(PetscArraycpy(v, p[1], 60));
+  PetscCall(PetscArraycpy(A, p[2], 60));
+  PetscCall(AncfDestroy(&a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  The stages of ancfstage.c are those of TSALPHA2. Newton stops at 1e-9 of its first residual or 1e-12 of the coordinates (about 1
+  m), and converges quadratically, so both ends agree to about 1e-12 m; v and A take that over dt and beta dt^2, here 1e-3 s, with
+  beta about 0.3, and a step or two more where one run stops an iteration earlier.
+*/
+static PetscErrorCode TestStage(const char options[])
+{
+  PetscReal x[2][3][60], err[3] = {0};
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) PetscCall(StageRun(options, k ? PETSC_TRUE : PETSC_FALSE, x[k][0], x[k][1], x[k][2]));
+  for (int q = 0; q < 3; q++)
+    for (int i = 0; i < 60; i++) err[q] = PetscMax(err[q], PetscAbsReal(x[0][q][i] - x[1][q][i]));
+  printf("stages with %s: %.1e m, %.1e m/s, %.1e m/s^2 from TSALPHA2's own\n", options, (double)err[0], (double)err[1],
+         (double)err[2]);
+  TEST(err[0] < 1e-11 && err[1] < 1e-8 && err[2] < 5e-5, "stage with %s: off by %g m, %g m/s, %g m/s^2", options, (double)err[0],
+       (double)err[1], (double)err[2]);
+  TEST(PetscAbsReal(x[0][0][26]) > 1e-4, "the beam with %s does not move: %g m", options, (double)x[0][0][26]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
@@ -705,6 +764,9 @@ int main(int argc, char **argv)
   PetscCall(TestJacobian("-ancf_ts_type alpha2 -ancf_damping_stiffness 0.3", PETSC_TRUE));
   PetscCall(TestJacobian("-ancf_ts_type bdf -ancf_damping_stiffness 0.3 -ancf_strain engineering", PETSC_FALSE));
   PetscCall(TestTypes());
+  PetscCall(TestStage("-ancf_ts_alpha_radius 0.8"));
+  PetscCall(TestStage("-ancf_ts_alpha_radius 0.5 -ancf_substeps 3 -ancf_damping 3"));
+  PetscCall(TestStage("-ancf_ts_alpha_radius 1 -ancf_damping_stiffness 0.01 -ancf_strain engineering"));
   PetscCall(TestContinuation("-ancf_ts_type alpha2"));
   PetscCall(TestContinuation("-ancf_ts_type bdf"));
   PetscCall(TestMomentum("-ancf_ts_type alpha2", 1e-4));

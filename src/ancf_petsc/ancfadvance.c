@@ -109,6 +109,7 @@ PetscErrorCode AncfTSSolve(Ancf ancf, PetscReal t)
   }
   ancf->restart = ancf->given = PETSC_FALSE;
   PetscCall(AncfStateStore(ancf, ancf->backup));
+  ancf->stored = PETSC_TRUE;
   PetscCall(TSSetTimeStep(ancf->ts, dt));
   if (ancf->stage) PetscCall(PetscArrayzero(ancf->impulse, 6 * ancf->nnodes));
   ancf->advanced = t - t0;

@@ -128,9 +128,12 @@ struct _p_Ancf {
   PetscReal *saved, savedtime, savedstep; /* the same for AncfSaveState(), NULL before */
   PetscReal *history, *eprev, *vprev;     /* acceleration carried by TSALPHA2, e and v before the step; NULL with other types */
   Vec A, E0, V0, work;                    /* the same as vectors, and a work vector */
-  PetscReal stagestart;                   /* s */
+  PetscReal stagestart, stagetime;        /* of the last stage: start of its step, its own time, s */
   PetscBool interpolates;                 /* TS takes stages as linear between the ends of a step */
   PetscReal stagedt;                      /* step of the last stage, s */
+  PetscBool fused, stored;                /* stages are made by ancfstage.c; backup holds the start of the coming step */
+  const PetscReal *e0, *v0;               /* fused: start of the step */
+  PetscReal *stagex, *stagev, *stagea;    /* fused: arguments of the equations of motion; stagev NULL without damping */
   PetscReal nominal;                      /* step of a TS that does not adapt, s; 0: it adapts */
   PetscBool given;                        /* history was set by the user */
   PetscBool restart, priming;             /* TS must start afresh; AncfAlphaStart() is at work */
@@ -315,6 +318,12 @@ extern PetscErrorCode AncfAlphaPreStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaPostStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt);
 extern PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f);
+
+/* ancfstage.c */
+extern PetscErrorCode AncfStageSetUp(Ancf ancf);
+extern PetscErrorCode AncfStageDestroy(Ancf ancf);
+extern PetscErrorCode AncfStagePreStep(Ancf ancf);
+extern PetscErrorCode AncfStagePostStep(Ancf ancf);
 
 /* ancfmass.c */
 extern PetscErrorCode AncfMassFactor(Ancf ancf);

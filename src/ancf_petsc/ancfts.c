@@ -232,7 +232,10 @@ static PetscErrorCode AncfPreStep(TS ts)
 
   PetscFunctionBegin;
   PetscCall(TSGetApplicationContext(ts, &ancf));
-  if (ancf->form == ANCF_FORM_SECOND) PetscCall(AncfAlphaPreStep(ancf));
+  if (ancf->fused)
+    PetscCall(AncfStagePreStep(ancf));
+  else if (ancf->form == ANCF_FORM_SECOND)
+    PetscCall(AncfAlphaPreStep(ancf));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,8 +244,8 @@ static PetscErrorCode AncfPreStage(TS ts, PetscReal t)
   Ancf ancf;
 
   PetscFunctionBegin;
-  (void)t;
   PetscCall(TSGetApplicationContext(ts, &ancf));
+  ancf->stagetime = t;
   PetscCall(TSGetTimeStep(ts, &ancf->stagedt));
   PetscCall(TSGetTime(ts, &ancf->stagestart));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -272,7 +275,10 @@ static PetscErrorCode AncfPostStep(TS ts)
 
   PetscFunctionBegin;
   PetscCall(TSGetApplicationContext(ts, &ancf));
-  if (ancf->form == ANCF_FORM_SECOND) PetscCall(AncfAlphaPostStep(ancf));
+  if (ancf->fused)
+    PetscCall(AncfStagePostStep(ancf));
+  else if (ancf->form == ANCF_FORM_SECOND)
+    PetscCall(AncfAlphaPostStep(ancf));
   for (PetscInt i = 0; i < 6 * ancf->nnodes && ancf->stage; i++) ancf->impulse[i] += ancf->stagedt * ancf->stage[i];
   if (ancf->nmult) {
     PetscCall(AncfTSPull(ancf));
@@ -297,6 +303,28 @@ static PetscReal AncfNorm(PetscInt n, const PetscReal *x)
   return PetscSqrtReal(s[0] + s[1] + s[2] + s[3] + s[4] + s[5]);
 }
 
+/* x -= lambda y, and both norms. */
+static void Update(PetscInt n, PetscReal lambda, PetscReal *PETSC_RESTRICT x, const PetscReal *PETSC_RESTRICT y, PetscReal *xnorm,
+                   PetscReal *ynorm)
+{
+  PetscReal s[6] = {0}, r[6] = {0};
+  PetscInt i;
+
+  for (i = 0; i + 6 <= n; i += 6)
+    for (int c = 0; c < 6; c++) {
+      x[i + c] -= lambda * y[i + c];
+      s[c] += x[i + c] * x[i + c];
+      r[c] += y[i + c] * y[i + c];
+    }
+  for (; i < n; i++) {
+    x[i] -= lambda * y[i];
+    s[0] += x[i] * x[i];
+    r[0] += y[i] * y[i];
+  }
+  *xnorm = PetscSqrtReal(s[0] + s[1] + s[2] + s[3] + s[4] + s[5]);
+  *ynorm = PetscSqrtReal(r[0] + r[1] + r[2] + r[3] + r[4] + r[5]);
+}
+
 /*
   Line search of the default: full steps (times -snes_linesearch_damping). Bending first stretches the chord, so that the residual
   rises before it falls; a step that fails is reduced. The same as SNESLINESEARCHBASIC in one pass over the vectors.
@@ -318,9 +346,7 @@ static PetscErrorCode AncfFullStep(SNESLineSearch search, void *ctx)
   PetscCall(VecGetLocalSize(X, &n));
   PetscCall(VecGetArray(X, &x));
   PetscCall(VecGetArrayRead(Y, &y));
-  for (PetscInt i = 0; i < n; i++) x[i] -= lambda * y[i];
-  xnorm = AncfNorm(n, x);
-  ynorm = AncfNorm(n, y);
+  Update(n, lambda, x, y, &xnorm, &ynorm);
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscCall(VecRestoreArray(X, &x));
   PetscCall(SNESComputeFunction(snes, X, F));
@@ -375,6 +401,7 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
   PetscFunctionBegin;
   PetscCall(PetscFree(ancf->backup));
   PetscCall(PetscFree(ancf->damped));
+  PetscCall(AncfStageDestroy(ancf));
   if (!ancf->whole) PetscCall(PetscFree3(ancf->history, ancf->eprev, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
@@ -504,6 +531,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
     PetscCall(TS2SetSolution(ancf->ts, ancf->U, ancf->V));
     PetscCall(SNESSetComputeInitialGuess(snes, AncfPredict, ancf));
     PetscCall(AncfAlphaSetUp(ancf));
+    PetscCall(AncfStageSetUp(ancf));
   } else {
     PetscCall(VecCreateSeq(ancf->comm, 2 * n + ancf->nmult, &ancf->U));
     PetscCall(VecZeroEntries(ancf->U));
