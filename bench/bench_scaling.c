@@ -277,7 +277,7 @@ static PetscErrorCode Experiment(const char *name, double markers, PetscInt step
   PetscCall(PetscPrintf(PETSC_COMM_SELF, "\n"));
   for (size_t k = 0; k < sizeof(counts) / sizeof(counts[0]); k++) {
     Layout l = {.count = counts[k], .beams = beams};
-    Cube(&l, size ? markers * (k + 1.0) * (k + 1.0) / 36.0 : markers);
+    Cube(&l, size ? markers * PetscSqr((double)k + 1.0) / 36.0 : markers);
     if (size) l.count = (l.n[0] * l.n[1] * l.n[2]) / 1000;
     if (Arrange(&l))
       PetscCall(Measure(&l, steps, csv, name, &first));

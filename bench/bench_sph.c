@@ -91,7 +91,7 @@ static PetscErrorCode AddMarkers(Sph sph, PetscReal dp)
   PetscInt m = 0, group;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(3 * PetscMax(nf, nw), &x, nf, &p, nw, &vol, nw, &depth));
+  PetscCall(PetscMalloc4(3 * (size_t)PetscMax(nf, nw), &x, nf, &p, nw, &vol, nw, &depth));
   for (PetscInt k = 1; k <= f[2]; k++)
     for (PetscInt j = 1; j <= f[1]; j++)
       for (PetscInt i = 1; i <= f[0]; i++) {

@@ -86,8 +86,8 @@ static PetscErrorCode make_surface(Host *h, PetscReal dp, PetscReal support, Cou
   CoupleHostSpec spec;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(nx + 1, &rowstart, 9 * nx, &node, n, &section));
-  PetscCall(PetscMalloc5(9 * nx, &shape, 9 * nx, &slope, 2 * n, &offset, n, &volume, n, &depth));
+  PetscCall(PetscMalloc3(nx + 1, &rowstart, 9 * (size_t)nx, &node, n, &section));
+  PetscCall(PetscMalloc5(9 * (size_t)nx, &shape, 9 * (size_t)nx, &slope, 2 * (size_t)n, &offset, n, &volume, n, &depth));
   rowstart[0] = 0;
   for (PetscInt i = 0; i < nx; i++) {
     const PetscReal r[2] = {((PetscReal)i + 0.5) * LENGTH / (PetscReal)nx, -0.5 * THICKNESS};
@@ -200,7 +200,7 @@ static PetscErrorCode exact_deflection(Host *h, PetscReal *w)
   PetscReal *Q;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * h->solid.n, &Q));
+  PetscCall(PetscMalloc1(3 * (size_t)h->solid.n, &Q));
   PetscCall(SolidPressure(&h->solid, 2, RHO * G * HEIGHT, Q));
   PetscCall(SolidSetLoads(&h->solid, Q));
   PetscCall(SolidStatic(&h->solid));
@@ -316,7 +316,8 @@ int main(int argc, char **argv)
   PetscCheck(argc > 1 && argv[1][0] != '-', PETSC_COMM_SELF, PETSC_ERR_USER, "name a mesh: host_plate FILE.msh [options]");
   PetscCall(options(&host, &dp, &tend, &check));
   PetscCall(SolidCreate(argv[1], &host.solid));
-  PetscCall(PetscCalloc3(3 * host.solid.n, &host.q, 3 * host.solid.n, &host.v, 3 * host.solid.n, &host.a));
+  PetscCall(
+      PetscCalloc3(3 * (size_t)host.solid.n, &host.q, 3 * (size_t)host.solid.n, &host.v, 3 * (size_t)host.solid.n, &host.a));
   PetscCall(exact_deflection(&host, &exact));
   PetscCall(couple_all(&host, dp, &sph, &couple));
   PetscCall(run(&host, couple, tend, &w, &load, &lost));

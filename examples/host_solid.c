@@ -243,7 +243,7 @@ PetscErrorCode SolidCreate(const char mesh[], Solid *s)
   PetscCall(DMPlexGetHeightStratum(s->dm, 0, &s->c0, &s->c1));
   s->n = p1;
   s->nfree = 0;
-  PetscCall(PetscCalloc3(2 * s->n, &s->X, 2 * s->n, &s->dof, s->c1 - s->c0, &s->cell));
+  PetscCall(PetscCalloc3(2 * (size_t)s->n, &s->X, 2 * (size_t)s->n, &s->dof, (size_t)(s->c1 - s->c0), &s->cell));
   for (PetscInt c = s->c0; c < s->c1; c++) PetscCall(NumberCell(s, c));
   PetscCall(PlaceNodes(s));
   PetscCall(NumberDisplacements(s));

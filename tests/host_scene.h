@@ -52,7 +52,7 @@ static PetscErrorCode SceneFluid(Sph *out)
   PetscCall(SphSetPeriodic(sph, periodic));
   PetscCall(SphSetFromOptions(sph));
   PetscCall(SphFillBox(3, DP, lo, scene_hi, SceneKeep, NULL, &n, &x));
-  PetscCall(PetscMalloc2(3 * n, &v, n, &p));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &p));
   for (PetscInt i = 0; i < n; i++) {
     p[i] = 1000.0 * 9.81 * (scene_hi[2] - x[3 * i + 2]);
     v[3 * i] = x[3 * i + 2];

@@ -11,8 +11,8 @@
 typedef struct {
   const char *name;
   int dim;
-  int n[3];        /* fluid sites per axis */
-  int periodic[3]; /* axes without walls, closed on themselves */
+  int n[3];              /* fluid sites per axis */
+  PetscBool periodic[3]; /* axes without walls, closed on themselves */
   SphKernelType kernel;
   SphWallType wall;
   SphViscosityType viscosity;
@@ -63,8 +63,6 @@ static inline PetscErrorCode SceneParameters(Sph sph, const Scene *c, const char
 {
   const double dp = SCENE_DP;
   const PetscReal lo[3] = {0.0, 0.0, 0.0}, hi[3] = {c->n[0] * dp, 1.5 * c->n[1] * dp, c->n[2] * dp}, f[3] = {0.3, -9.81, 0.0};
-  const PetscBool periodic[3] = {c->periodic[0] ? PETSC_TRUE : PETSC_FALSE, c->periodic[1] ? PETSC_TRUE : PETSC_FALSE,
-                                 c->periodic[2] ? PETSC_TRUE : PETSC_FALSE};
 
   PetscFunctionBegin;
   PetscCall(SphSetType(sph, type));
@@ -79,7 +77,7 @@ static inline PetscErrorCode SceneParameters(Sph sph, const Scene *c, const char
   PetscCall(SphSetXSPH(sph, c->zeta));
   PetscCall(SphSetBodyForce(sph, f));
   PetscCall(SphSetDomain(sph, lo, hi));
-  PetscCall(SphSetPeriodic(sph, periodic));
+  PetscCall(SphSetPeriodic(sph, c->periodic));
   PetscCall(SphSetKernel(sph, c->kernel));
   PetscCall(SphSetWall(sph, c->wall));
   PetscCall(SphSetViscosityType(sph, c->viscosity));
@@ -98,7 +96,7 @@ static inline PetscErrorCode SceneBoundary(Sph sph, PetscInt n, const PetscReal 
   PetscInt g;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(3 * n, &v));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &v));
   for (PetscInt i = 0; i < 3 * n; i++) v[i] = v0[i % 3];
   PetscCall(SphAddBoundary(sph, n, x, v, vol, depth, &g));
   PetscCall(PetscFree(v));
@@ -112,7 +110,6 @@ static inline PetscErrorCode SceneCreate(const Scene *c, const char *type, SphPr
   const PetscReal lo[3] = {0.0, 0.0, 0.0}, hi[3] = {c->n[0] * dp, c->n[1] * dp, c->n[2] * dp};
   const PetscReal rest[3] = {0.0, 0.0, 0.0},
                   moving[3] = {scene_velocity[0], scene_velocity[1], c->dim == 3 ? scene_velocity[2] : 0.0};
-  const PetscBool periodic[3] = {c->periodic[0], c->periodic[1], c->periodic[2]};
   const PetscBool face[6] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_FALSE, c->dim == 3, c->dim == 3};
   PetscReal body[4], *x, *v, *p, *vol, *depth, support;
   PetscInt n;
@@ -124,7 +121,7 @@ static inline PetscErrorCode SceneCreate(const Scene *c, const char *type, SphPr
   PetscCall(SphCreate(PETSC_COMM_SELF, &sph));
   PetscCall(SceneParameters(sph, c, type, precision));
   PetscCall(SphFillBox(c->dim, dp, lo, hi, OutsideBody, body, &n, &x));
-  PetscCall(PetscMalloc2(3 * n, &v, n, &p));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &p));
   for (PetscInt i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++) {
       v[3 * i + k] = k < c->dim ? Noise(&seed) : 0.0;
@@ -136,7 +133,7 @@ static inline PetscErrorCode SceneCreate(const Scene *c, const char *type, SphPr
   PetscCall(PetscFree2(v, p));
   PetscCall(PetscFree(x));
   PetscCall(SphGetSupport(sph, &support));
-  PetscCall(SphFillWalls(c->dim, dp, lo, hi, face, periodic, support, &n, &x, &vol, &depth));
+  PetscCall(SphFillWalls(c->dim, dp, lo, hi, face, c->periodic, support, &n, &x, &vol, &depth));
   PetscCall(SceneBoundary(sph, n, x, vol, depth, rest));
   PetscCall(PetscFree(x));
   PetscCall(PetscFree(vol));
@@ -179,8 +176,8 @@ static inline PetscErrorCode SceneSetLink(Sph sph, const Scene *c, SceneLink lin
   PetscFunctionBegin;
   if (link == SCENE_FREE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneOffsets(c, &n, &o));
-  PetscCall(PetscMalloc4(n + 1, &rowstart, 4 * n, &node, n, &section, 4 * n, &shape));
-  PetscCall(PetscCalloc1(3 * n, &zero));
+  PetscCall(PetscMalloc4(n + 1, &rowstart, 4 * (size_t)n, &node, n, &section, 4 * (size_t)n, &shape));
+  PetscCall(PetscCalloc1(3 * (size_t)n, &zero));
   rowstart[0] = 0;
   for (PetscInt i = 0; i < n; i++) {
     rowstart[i + 1] = 4 * (i + 1);
@@ -246,7 +243,7 @@ static inline PetscErrorCode SceneMoveBody(Sph sph, const Scene *c, double t)
   }
   SceneBody(c, body);
   PetscCall(SceneBodyMarkers(c, body, &n, &x));
-  PetscCall(PetscMalloc2(3 * n, &v, 3 * n, &a));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &v, 3 * (size_t)n, &a));
   for (PetscInt i = 0; i < 3 * n; i++) {
     a[i] = i % 3 < c->dim ? scene_acceleration[i % 3] : 0.0;
     v[i] = (i % 3 < c->dim ? scene_velocity[i % 3] : 0.0) + a[i] * t;
@@ -267,7 +264,7 @@ static inline PetscErrorCode SceneTurnBody(Sph sph, const Scene *c)
   PetscFunctionBegin;
   SceneBody(c, body);
   PetscCall(SceneBodyMarkers(c, body, &n, &x));
-  PetscCall(PetscMalloc1(3 * n, &w));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &w));
   for (PetscInt i = 0; i < 3 * n; i++) w[i] = c->dim == 3 || i % 3 == 2 ? 5.0 * (PetscReal)(i % 3) - 4.0 : 0.0;
   PetscCall(SphSetBoundaryRotation(sph, 1, w));
   PetscCall(PetscFree(w));

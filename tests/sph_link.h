@@ -19,7 +19,7 @@ static inline PetscErrorCode SceneCheckLoad(Sph sph, const Scene *c, double t, c
   PetscFunctionBegin;
   SceneBody(c, body);
   PetscCall(SceneOffsets(c, &n, &o));
-  PetscCall(PetscMalloc1(3 * n, &f));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &f));
   PetscCall(SphGetGroupLinkSize(sph, 1, NULL, &nload));
   PetscCall(SphGetGroupLoad(sph, 1, load, &got));
   PetscCall(SphGetBoundaryForce(sph, 1, f));
@@ -62,7 +62,7 @@ static inline PetscErrorCode SceneCheckForgotten(Sph sph, const Scene *c, double
   PetscInt bad = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(3 * sph->n, &f.x, 3 * sph->n, &moved.x));
+  PetscCall(PetscMalloc2(3 * (size_t)sph->n, &f.x, 3 * (size_t)sph->n, &moved.x));
   PetscCall(SphGetFields(sph, &f));
   PetscCall(SphGetFields(sph, &moved));
   for (PetscInt i = first; i < last; i++) moved.x[i] += i % 3 < c->dim ? 0.1 * SCENE_DP : 0.0;
@@ -102,7 +102,7 @@ static inline PetscErrorCode SceneCheckLink(const Scene *c, const char *type, Sc
       PetscCall(SceneMoveBody(sph, c, t + 2e-4));
     }
     n = sph->n;
-    PetscCall(PetscMalloc1(9 * n, &d[k]));
+    PetscCall(PetscMalloc1(9 * (size_t)n, &d[k]));
     PetscCall(SceneCheckForgotten(sph, c, t + 2e-4, what));
     f.x = d[k];
     f.v = d[k] + 3 * n;

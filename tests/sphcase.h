@@ -46,7 +46,7 @@ static inline PetscErrorCode FlowFluid(const FlowCase *c, Sph *out)
   if (c->xsph >= 0.0) PetscCall(SphSetXSPH(sph, c->xsph));
   PetscCall(SphSetFromOptions(sph));
   PetscCall(SphFillBox(c->dim, c->dp, block ? c->fluidlo : c->lo, block ? c->fluidhi : c->hi, c->keep, c->ctx, &n, &x));
-  PetscCall(PetscCalloc2(3 * n, &v, n, &p));
+  PetscCall(PetscCalloc2(3 * (size_t)n, &v, n, &p));
   for (PetscInt i = 0; i < n && c->initial; i++) c->initial(x + 3 * i, c->ctx, v + 3 * i, p + i);
   PetscCall(SphAddFluid(sph, n, x, v, p));
   PetscCall(PetscFree2(v, p));
@@ -64,7 +64,7 @@ static inline PetscErrorCode FlowWalls(const FlowCase *c, Sph sph, PetscInt *gro
   PetscFunctionBegin;
   PetscCall(SphGetSupport(sph, &support));
   PetscCall(SphFillWalls(c->dim, c->dp, c->lo, c->hi, c->wall, c->periodic, support, &n, &x, &volume, &depth));
-  PetscCall(PetscCalloc1(3 * n, &v));
+  PetscCall(PetscCalloc1(3 * (size_t)n, &v));
   for (PetscInt i = 0; i < n; i++) {
     PetscInt faces = 0, face = -1;
     for (PetscInt k = 0; k < 2 * c->dim; k++)

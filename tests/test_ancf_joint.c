@@ -286,7 +286,7 @@ static PetscErrorCode Fly(PetscInt arms, const char options[], PetscReal dt)
   PetscCall(NetCreate(4, s, 2, j, 0, options, &a));
   PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
   PetscCall(AncfGetNumNodes(a, &n));
-  PetscCall(PetscMalloc2(6 * n, &x, 6 * n, &y));
+  PetscCall(PetscMalloc2(6 * (size_t)n, &x, 6 * (size_t)n, &y));
   for (PetscInt i = 0; i < 6 * n; i++) x[i] = e[i];
   for (PetscInt i = 0; i < 6 * n; i++)
     y[i] = w[(i + 1) % 3] * x[i - i % 3 + (i + 2) % 3] - w[(i + 2) % 3] * x[i - i % 3 + (i + 1) % 3];

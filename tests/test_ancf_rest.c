@@ -116,7 +116,7 @@ static PetscErrorCode TestRest(const char options[])
   PetscCall(SetUpWith(a, options, NULL));
   PetscCall(AncfGetNumNodes(a, &n));
   PetscCall(AncfGetState(a, NULL, &e, NULL, NULL));
-  PetscCall(PetscMalloc1(6 * n, &x));
+  PetscCall(PetscMalloc1(6 * (size_t)n, &x));
   PetscCall(PetscArraycpy(x, e, 6 * n));
   for (int i = 1; i <= 50; i++) PetscCall(AncfAdvance(a, i * 0.01));
   for (PetscInt i = 0; i < 6 * n; i++) worst = PetscMax(worst, PetscAbsReal(e[i] - x[i]));

@@ -10,7 +10,7 @@ static PetscErrorCode RandomState(Ancf a, PetscReal size)
   PetscFunctionBegin;
   PetscCall(AncfGetNumNodes(a, &n));
   PetscCall(AncfGetState(a, NULL, &e, &v, NULL));
-  PetscCall(PetscMalloc2(6 * n, &x, 6 * n, &y));
+  PetscCall(PetscMalloc2(6 * (size_t)n, &x, 6 * (size_t)n, &y));
   for (PetscInt i = 0; i < 6 * n; i++) {
     x[i] = e[i] + (i >= 6 ? size * Random() : 0);
     y[i] = i >= 6 && i < 6 * (n - 1) ? Random() : 0; /* both ends may be fixed */

@@ -58,7 +58,7 @@ static PetscErrorCode AddOuterWall(PetscReal dp, PetscReal support, Couple coupl
   CoupleSurface wall;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(3 * most, &x, most, &vol, most, &depth));
+  PetscCall(PetscMalloc3(3 * (size_t)most, &x, most, &vol, most, &depth));
   for (PetscInt k = 0; k < layers; k++) {
     const double r = RO + (k + 0.5) * dp;
     const PetscInt m = (PetscInt)lrint(2.0 * PETSC_PI * r / dp);
@@ -175,7 +175,7 @@ int main(int argc, char **argv)
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(PetscOptionsGetRealArray(NULL, NULL, "-dp", dp, &n, NULL));
-  if (!dp[n - 1]) n = 2;
+  if (dp[n - 1] == 0) n = 2;
   for (PetscInt i = 0; i < n; i++) PetscCall(Run(dp[i], &er, &ei));
   TEST_NEAR(er, 0.0, 0.03, "frequency error over |w|");
   TEST_NEAR(ei, 0.0, 0.03, "decay rate error over |w|");

@@ -122,7 +122,7 @@ static PetscErrorCode PressureError(const Tank *t, Sph sph, double *error, doubl
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
   PetscCall(SphGetSmoothingLength(sph, &h));
-  PetscCall(PetscMalloc2(3 * (n + nb), &x, n + nb, &p));
+  PetscCall(PetscMalloc2(3 * (size_t)(n + nb), &x, (size_t)(n + nb), &p));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x, .p = p}));
   *error = 0.0;
   for (PetscInt i = 0; i < n; i++) {

@@ -57,7 +57,7 @@ static PetscErrorCode MakeFluid(const char *backend, SphPrecision precision, Sph
   PetscCall(SphSetPeriodic(*sph, per));
   PetscCall(SphSetPrecision(*sph, precision));
   PetscCall(SphFillBox(3, DP, lo, hi, Outside, NULL, &n, &x));
-  PetscCall(PetscMalloc1(3 * n, &v));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &v));
   for (PetscInt i = 0; i < n; i++) {
     v[3 * i] = 0.3 * sin(2.0 * PETSC_PI * x[3 * i + 1] / hi[1]);
     v[3 * i + 1] = 0.2 * sin(2.0 * PETSC_PI * x[3 * i] / hi[0]);
@@ -201,7 +201,7 @@ static PetscErrorCode Dump(System *s, PetscInt *n, PetscReal **d)
   PetscCall(SphGetCounts(s->sph, &nf, &nb, NULL));
   *n = nf + nb;
   PetscCall(CoupleGetNumSurfaces(s->couple, &surfaces));
-  PetscCall(PetscCalloc1(6 * *n + 7 * surfaces, d));
+  PetscCall(PetscCalloc1((size_t)(6 * *n + 7 * surfaces), d));
   f.x = *d;
   f.v = *d + 3 * *n;
   PetscCall(SphGetFields(s->sph, &f));
@@ -267,7 +267,7 @@ static PetscErrorCode CheckMarkers(System *s)
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(s->sph, &nf, &nb, NULL));
-  PetscCall(PetscMalloc2(3 * (nf + nb), &all.x, 3 * (nf + nb), &all.v));
+  PetscCall(PetscMalloc2(3 * (size_t)(nf + nb), &all.x, 3 * (size_t)(nf + nb), &all.v));
   PetscCall(SphGetFields(s->sph, &all));
   PetscCall(CoupleGetNumSurfaces(s->couple, &surfaces));
   at = 3 * nf;

@@ -50,7 +50,7 @@ static PetscErrorCode MakeFluid(SphPrecision precision, Sph *sph)
   PetscCall(SphSetPeriodic(*sph, per));
   PetscCall(SphSetPrecision(*sph, precision));
   PetscCall(SphFillBox(3, DP, lo, hi, Outside, NULL, &n, &x));
-  PetscCall(PetscMalloc1(3 * n, &v));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &v));
   for (PetscInt i = 0; i < n; i++) {
     v[3 * i] = 0.1 * sin(2.0 * PETSC_PI * x[3 * i + 1] / 0.4);
     v[3 * i + 1] = 0.1 * sin(2.0 * PETSC_PI * x[3 * i + 2] / 0.32);
@@ -150,7 +150,7 @@ static PetscErrorCode Run(SphPrecision precision, CoupleLoads loads, PetscInt st
   PetscCall(SphGetCounts(s.sph, &n, &nb, NULL));
   *nstate = 6 * (n + nb);
   PetscCall(PetscMalloc1(*nstate, state));
-  PetscCall(PetscMalloc1(3 * (n + nb), &a));
+  PetscCall(PetscMalloc1(3 * (size_t)(n + nb), &a));
   *bound = 0.0;
   for (PetscInt i = 0; i < steps; i++) {
     PetscReal sum = 0.0;

@@ -165,7 +165,7 @@ static PetscErrorCode TestConservation(PetscBool again, PetscReal *sum)
   PetscCall(CoupleShortSetUp(sr));
   PetscCall(AncfGetNumNodes(ancf, &nn));
   PetscCall(AncfGetState(ancf, NULL, &e, &ed, NULL));
-  PetscCall(PetscMalloc2(6 * nn, &x, 6 * nn, &v));
+  PetscCall(PetscMalloc2(6 * (size_t)nn, &x, 6 * (size_t)nn, &v));
   for (PetscInt i = 0; i < 6 * nn; i++) {
     PetscReal r;
     PetscCall(PetscRandomGetValueReal(rnd, &r));
@@ -255,7 +255,7 @@ static PetscErrorCode Bent(PetscReal L, PetscReal turn, Ancf *ancf)
   PetscCall(AncfCreate(PETSC_COMM_SELF, ancf));
   PetscCall(AddBeam(*ancf, a0, a1, n, 1e6));
   PetscCall(AncfSetUp(*ancf));
-  PetscCall(PetscCalloc2(6 * (n + 1), &x, 6 * (n + 1), &v));
+  PetscCall(PetscCalloc2(6 * (size_t)(n + 1), &x, 6 * (size_t)(n + 1), &v));
   for (PetscInt i = 0; i <= n; i++) { /* a hairpin: straight legs, a half circle of length `turn` in the middle */
     const PetscReal s = L * (PetscReal)i / (PetscReal)n, r = turn / PETSC_PI, leg = .5 * (L - turn);
     const PetscReal phi = turn > 0. ? PetscMax(0., PetscMin(PETSC_PI, (s - leg) / r)) : 0.;
@@ -460,7 +460,7 @@ static PetscErrorCode TestGrid(void)
         }
         PetscCall(AncfSetUp(ancf));
         PetscCall(AncfGetState(ancf, NULL, &e, NULL, NULL));
-        PetscCall(PetscCalloc1(18 * n, &v));
+        PetscCall(PetscCalloc1(18 * (size_t)n, &v));
         for (PetscInt b = 0; b < n; b++)
           for (PetscInt k = 0; k < 3; k++) v[18 * b + 6 * k + 2] = sin(3. * (PetscReal)(way < 2 ? b : (b ? j : i)));
         PetscCall(AncfSetState(ancf, 0., e, v));

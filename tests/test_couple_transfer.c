@@ -45,7 +45,7 @@ static PetscErrorCode MakeBeam(PetscInt dim, Ancf *out)
   PetscCall(AncfSetUp(ancf));
   PetscCall(AncfGetNumNodes(ancf, &n));
   PetscCall(AncfGetState(ancf, NULL, &e, &v, NULL));
-  PetscCall(PetscMalloc2(6 * n, &e1, 6 * n, &v1));
+  PetscCall(PetscMalloc2(6 * (size_t)n, &e1, 6 * (size_t)n, &v1));
   for (PetscInt i = 0; i < 6 * n; i++) {
     const PetscBool flat = dim == 2 && i % 3 == 2 ? PETSC_TRUE : PETSC_FALSE;
     e1[i] = e[i] + (flat ? 0.0 : Random(-1, 1) * (i % 6 < 3 ? 0.02 : 0.2));
@@ -94,7 +94,7 @@ static PetscErrorCode CheckKinematics(CoupleSurface s, const CoupleSurfaceOps *o
   const double dt = 1e-6;
 
   PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) PetscCall(PetscMalloc3(3 * n, &x[k], 3 * n, &v[k], 3 * n, &a[k]));
+  for (int k = 0; k < 3; k++) PetscCall(PetscMalloc3(3 * (size_t)n, &x[k], 3 * (size_t)n, &v[k], 3 * (size_t)n, &a[k]));
   PetscCall((*ops->kinematics)(s, -dt, x[0], v[0], a[0]));
   PetscCall((*ops->kinematics)(s, dt, x[2], v[2], a[2]));
   PetscCall((*ops->kinematics)(s, 0.0, x[1], v[1], a[1]));
@@ -119,8 +119,8 @@ static PetscErrorCode CheckVirtualWork(Ancf ancf, CoupleSurface s, const CoupleS
 
   PetscFunctionBegin;
   PetscCall(AncfGetNumNodes(ancf, &nn));
-  PetscCall(PetscMalloc4(6 * nn, &e0, 6 * nn, &v0, 6 * nn, &em, 6 * nn, &de));
-  PetscCall(PetscMalloc4(3 * n, &xp, 3 * n, &xm, 3 * n, &v, 3 * n, &a));
+  PetscCall(PetscMalloc4(6 * (size_t)nn, &e0, 6 * (size_t)nn, &v0, 6 * (size_t)nn, &em, 6 * (size_t)nn, &de));
+  PetscCall(PetscMalloc4(3 * (size_t)n, &xp, 3 * (size_t)n, &xm, 3 * (size_t)n, &v, 3 * (size_t)n, &a));
   PetscCall(AncfGetLoads(ancf, &Q));
   PetscCall(AncfGetState(ancf, NULL, &e, &ed, NULL));
   for (PetscInt i = 0; i < 6 * nn; i++) {
@@ -174,7 +174,7 @@ static PetscErrorCode TestBeam(PetscInt dim)
   PetscCall(CoupleSurfaceGetOps(s, &ops));
   PetscCall((*ops.getmarkers)(s, &n, &x0, &volume, &depth));
   CheckRest(dim, n, volume, depth, sqrt(0.8 * 0.8 + 0.3 * 0.3 + (dim == 3 ? 0.04 : 0.0)));
-  PetscCall(PetscMalloc4(3 * n, &x, 3 * n, &v, 3 * n, &a, 3 * n, &f));
+  PetscCall(PetscMalloc4(3 * (size_t)n, &x, 3 * (size_t)n, &v, 3 * (size_t)n, &a, 3 * (size_t)n, &f));
   for (PetscInt i = 0; i < 3 * n; i++) f[i] = dim == 2 && i % 3 == 2 ? 0.0 : Random(-1, 1);
   PetscCall(CheckKinematics(s, &ops, n, 1e-3));
   PetscCall((*ops.kinematics)(s, 1e-3, x, v, a)); /* as in a step: the forces act on an extrapolated state */
@@ -223,7 +223,7 @@ static PetscErrorCode TestRigid(void)
   PetscCall(CoupleSurfaceCreateRigid(rigid, body, 3, DP, 3 * DP, &s));
   PetscCall(CoupleSurfaceGetOps(s, &ops));
   PetscCall((*ops.getmarkers)(s, &n, &x0, &volume, &depth));
-  PetscCall(PetscMalloc4(3 * n, &x, 3 * n, &v, 3 * n, &a, 3 * n, &f));
+  PetscCall(PetscMalloc4(3 * (size_t)n, &x, 3 * (size_t)n, &v, 3 * (size_t)n, &a, 3 * (size_t)n, &f));
   for (PetscInt i = 0; i < 3 * n; i++) f[i] = Random(-1, 1);
   PetscCall(CheckKinematics(s, &ops, n, 1e-6));
   PetscCall((*ops.kinematics)(s, 1e-3, x, v, a));

@@ -49,8 +49,8 @@ static PetscErrorCode OwnBeam(Ancf ancf, PetscReal support, CoupleSurface *surfa
   PetscCall(CoupleSurfaceCreateBeam(ancf, 0, 3, DP, support, &builtin));
   PetscCall(CoupleSurfaceHostGetSpec(builtin, &spec));
   PetscCall(AncfGetBeam(ancf, 0, &beam, NULL, &l));
-  PetscCall(PetscMalloc5(spec.nsections + 1, &rowstart, 4 * spec.nsections, &node, spec.nnodes, &direction, 4 * spec.nsections,
-                         &S, 4 * spec.nsections, &Sx));
+  PetscCall(PetscMalloc5(spec.nsections + 1, &rowstart, 4 * (size_t)spec.nsections, &node, spec.nnodes, &direction,
+                         4 * (size_t)spec.nsections, &S, 4 * (size_t)spec.nsections, &Sx));
   for (PetscInt j = 0; j < spec.nnodes; j++) direction[j] = j % 2 ? PETSC_TRUE : PETSC_FALSE;
   ds = l * (PetscReal)beam.elements / (PetscReal)spec.nsections;
   rowstart[0] = 0;

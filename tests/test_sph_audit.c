@@ -27,7 +27,7 @@ static PetscErrorCode Disturb(Sph sph, PetscReal dp)
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &nf, &nb, NULL));
-  PetscCall(PetscMalloc3(3 * (nf + nb), &x, 3 * (nf + nb), &v, nf + nb, &rho));
+  PetscCall(PetscMalloc3(3 * (size_t)(nf + nb), &x, 3 * (size_t)(nf + nb), &v, (size_t)(nf + nb), &rho));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x, .v = v, .rho = rho}));
   for (PetscInt i = 0; i < nf; i++) {
     for (int k = 0; k < 2; k++) {
@@ -51,7 +51,7 @@ static PetscErrorCode BruteForce(Sph sph, double *fluid, double *boundary, doubl
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &nf, &nb, NULL));
   PetscCall(SphGetSums(sph, &sums));
-  PetscCall(PetscMalloc4(3 * (nf + nb), &x, 3 * (nf + nb), &v, 3 * (nf + nb), &a, 3 * nb, &f));
+  PetscCall(PetscMalloc4(3 * (size_t)(nf + nb), &x, 3 * (size_t)(nf + nb), &v, 3 * (size_t)(nf + nb), &a, 3 * (size_t)nb, &f));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x, .v = v, .a = a}));
   PetscCall(SphGetBoundaryForce(sph, 0, f));
   *fluid = *boundary = *angular = 0.0;

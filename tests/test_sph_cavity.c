@@ -49,8 +49,8 @@ static PetscErrorCode LidCreate(Sph sph, Lid *lid)
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscMalloc1(3 * (n + nb), &x));
-  PetscCall(PetscMalloc3(3 * nb, &lid->x0, 3 * nb, &lid->x, 3 * nb, &lid->v));
+  PetscCall(PetscMalloc1(3 * (size_t)(n + nb), &x));
+  PetscCall(PetscMalloc3(3 * (size_t)nb, &lid->x0, 3 * (size_t)nb, &lid->x, 3 * (size_t)nb, &lid->v));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x}));
   PetscCall(PetscArraycpy(lid->x0, x + 3 * n, 3 * nb));
   PetscCall(PetscFree(x));
@@ -100,7 +100,7 @@ static PetscErrorCode CountOutside(Sph sph, PetscInt *outside)
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscMalloc1(3 * (n + nb), &x));
+  PetscCall(PetscMalloc1(3 * (size_t)(n + nb), &x));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x}));
   *outside = 0;
   for (PetscInt i = 0; i < n; i++) *outside += x[3 * i] < 0 || x[3 * i] > 1 || x[3 * i + 1] < 0 || x[3 * i + 1] > 1;

@@ -65,9 +65,10 @@ static PetscErrorCode Make(const Case *c, Sph *out)
   PetscCall(PetscFree(x));
   PetscCall(SphGetSupport(sph, &support));
   for (int top = 0; top < 2; top++) {
-    const PetscBool face[6] = {0, 0, !top, top, 0, 0};
+    const PetscBool face[6] = {PETSC_FALSE, PETSC_FALSE, top ? PETSC_FALSE : PETSC_TRUE, top ? PETSC_TRUE : PETSC_FALSE,
+                               PETSC_FALSE, PETSC_FALSE};
     PetscCall(SphFillWalls(2, dp, lo, hi, face, periodic, support, &n, &xw, &vol, &depth));
-    PetscCall(PetscCalloc1(3 * n, &v));
+    PetscCall(PetscCalloc1(3 * (size_t)n, &v));
     if (top && c->couette)
       for (PetscInt i = 0; i < n; i++) v[3 * i] = V0;
     PetscCall(SphAddBoundary(sph, n, xw, v, vol, depth, &g));
@@ -89,7 +90,7 @@ static PetscErrorCode L2Error(Sph sph, int couette, double t, double *error)
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscMalloc2(3 * (n + nb), &x, 3 * (n + nb), &v));
+  PetscCall(PetscMalloc2(3 * (size_t)(n + nb), &x, 3 * (size_t)(n + nb), &v));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x, .v = v}));
   for (PetscInt i = 0; i < n; i++) {
     const double u = Exact(couette, x[3 * i + 1], t), d = v[3 * i] - u;

@@ -258,7 +258,7 @@ typedef void (*Term)(const Ref *r, PetscInt a, PetscInt b, const Pair *x, void *
 static void ForNeighbours(const Ref *r, PetscInt a, int fluidonly, Term term, void *ctx)
 {
   const SphParams *p = r->p;
-  const int ex = p->periodic[0], ey = p->periodic[1], ez = p->dim == 3 && p->periodic[2];
+  const int ex = (int)p->periodic[0], ey = (int)p->periodic[1], ez = p->dim == 3 && p->periodic[2];
 
   for (PetscInt b = 0; b < r->t->n; b++) {
     if (r->t->group[b] == -2 || (fluidonly && r->t->group[b] != -1)) continue;
@@ -511,7 +511,7 @@ static PetscErrorCode CheckForcesAndLimits(Sph sph, const Snapshot *t, const cha
   PetscInt bad = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(3 * sph->n, &f));
+  PetscCall(PetscMalloc1(3 * (size_t)sph->n, &f));
   for (PetscInt g = 0; g < sph->ngroups; g++) {
     PetscCall(SphGetBoundaryForce(sph, g, f));
     for (PetscInt i = sph->groupstart[g]; i < sph->groupstart[g + 1]; i++)
@@ -692,7 +692,7 @@ static PetscErrorCode CheckRoundTrip(const Scene *c, const char *type, SphPrecis
       differ +=
           t[0].x[k][i] != t[1].x[k][i] || t[0].v[k][i] != t[1].v[k][i] || t[0].a[k][i] != t[1].a[k][i] || t[0].s[i] != t[1].s[i];
   TEST(differ == 0, "%s: two runs differ in %d values", c->name, (int)differ);
-  PetscCall(PetscMalloc3(3 * t[0].n, &f.x, 3 * t[0].n, &f.v, t[0].n, &f.rho));
+  PetscCall(PetscMalloc3(3 * (size_t)t[0].n, &f.x, 3 * (size_t)t[0].n, &f.v, t[0].n, &f.rho));
   PetscCall(SphGetFields(sph[0], &f));
   for (PetscInt i = 0; i < t[0].n; i++) {
     f.v[3 * i] += 0.25;
@@ -773,7 +773,7 @@ static PetscErrorCode CheckTrouble(const Scene *c, const char *type)
     PetscCall(SceneCreate(c, type, SPH_PRECISION_SINGLE, &sph));
     PetscCall(SphSetCheckEvery(sph, 2));
     PetscCall(SphSetUp(sph));
-    PetscCall(PetscMalloc4(3 * sph->n, &f.x, 3 * sph->n, &f.v, sph->n, &f.rho, sph->n, &f.group));
+    PetscCall(PetscMalloc4(3 * (size_t)sph->n, &f.x, 3 * (size_t)sph->n, &f.v, sph->n, &f.rho, sph->n, &f.group));
     PetscCall(SphGetFields(sph, &f));
     if (trouble == 0)
       f.v[3 * 17 + 1] = NAN;

@@ -28,7 +28,7 @@ static PetscErrorCode Front(Sph sph, PetscReal dp, double *z, PetscInt *lost)
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &n, &nb, lost));
-  PetscCall(PetscMalloc1(3 * (n + nb), &x));
+  PetscCall(PetscMalloc1(3 * (size_t)(n + nb), &x));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x}));
   *z = 0.0;
   for (PetscInt i = 0; i < n; i++) {

@@ -62,7 +62,8 @@ static PetscErrorCode Fill(const Case *c, double dp, const double hi[3], Markers
     n[d] = d < c->dim ? (int)lround(hi[d] / dp) : 1;
     total *= n[d];
   }
-  PetscCall(PetscMalloc6(3 * total, &k->x, 3 * total, &k->v, 3 * total, &k->ab, total, &k->p, total, &k->vol, total, &k->depth));
+  PetscCall(PetscMalloc6(3 * (size_t)total, &k->x, 3 * (size_t)total, &k->v, 3 * (size_t)total, &k->ab, total, &k->p, total,
+                         &k->vol, total, &k->depth));
   for (pass = 0; pass < 2; pass++) {
     for (int s = 0; s < total; s++) {
       const int i[3] = {s % n[0], s / n[0] % n[1], s / (n[0] * n[1])}, wall = c->walls && i[1] < 3;
@@ -133,7 +134,8 @@ static PetscErrorCode MakeBrute(Sph sph, const Markers *k, Brute *b)
   double *m, *x, *v;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc7(3 * k->n, &x, 3 * k->n, &v, k->n, &boundary, k->n, &m, k->n, &b->s, 3 * k->n, &b->u, 3 * k->n, &b->w));
+  PetscCall(PetscCalloc7(3 * (size_t)k->n, &x, 3 * (size_t)k->n, &v, k->n, &boundary, k->n, &m, k->n, &b->s, 3 * (size_t)k->n,
+                         &b->u, 3 * (size_t)k->n, &b->w));
   for (int id = 0; id < k->n; id++) {
     const int i = sph->slot[id];
     for (int d = 0; d < 3; d++) {

@@ -85,7 +85,7 @@ static PetscErrorCode Run(const Case *c, int threads, PetscInt steps, PetscInt *
   }
   PetscCall(SphGetCounts(sph, &nf, &nb, NULL));
   *n = nf + nb;
-  PetscCall(PetscMalloc1(7 * *n, &v));
+  PetscCall(PetscMalloc1(7 * (size_t)*n, &v));
   PetscCall(SphGetFields(sph, &(SphFields){.x = v, .v = v + 3 * *n, .rho = v + 6 * *n}));
   PetscCall(SphDestroy(&sph));
   *out = v;
@@ -190,7 +190,7 @@ static PetscErrorCode TaylorGreen(SphIntegratorType integrator, PetscReal zeta, 
   PetscCall(SphSetDomain(sph, lo, hi));
   PetscCall(SphSetPeriodic(sph, periodic));
   PetscCall(SphFillBox(2, dp, lo, hi, NULL, NULL, &n, &x));
-  PetscCall(PetscMalloc2(3 * n, &v, n, &p));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &p));
   for (PetscInt i = 0; i < n; i++) {
     const double a = 2.0 * PETSC_PI * x[3 * i], b = 2.0 * PETSC_PI * x[3 * i + 1];
     v[3 * i] = -cos(a) * sin(b);
@@ -206,7 +206,7 @@ static PetscErrorCode TaylorGreen(SphIntegratorType integrator, PetscReal zeta, 
     PetscCall(SphStepBegin(sph, T / (PetscReal)steps));
     PetscCall(SphStepEnd(sph));
   }
-  PetscCall(PetscMalloc1(6 * n, out));
+  PetscCall(PetscMalloc1(6 * (size_t)n, out));
   PetscCall(SphGetFields(sph, &(SphFields){.x = *out, .v = *out + 3 * n}));
   PetscCall(SphDestroy(&sph));
   *nout = n;

@@ -41,7 +41,7 @@ static PetscErrorCode CloudCreate(PetscInt dim, PetscReal length,
   c->dp = f.dp;
   c->h = 1.3 * f.dp;
   c->L = length;
-  PetscCall(PetscMalloc4(3 * n, &c->x, 3 * n, &c->v, n, &c->rho, n, &c->p));
+  PetscCall(PetscMalloc4(3 * (size_t)n, &c->x, 3 * (size_t)n, &c->v, n, &c->rho, n, &c->p));
   PetscCall(SphGetFields(c->sph, &(SphFields){.x = c->x}));
   for (PetscInt i = 0; i < n; i++) {
     for (int k = 0; k < dim; k++) c->x[3 * i + k] += 0.5 * f.dp * Shake(3 * i + k);

@@ -52,7 +52,7 @@ static PetscErrorCode Decay(Sph sph, PetscReal t, double *amplitude, double *ene
 
   PetscFunctionBegin;
   PetscCall(SphGetCounts(sph, &n, NULL, NULL));
-  PetscCall(PetscMalloc2(3 * n, &x, 3 * n, &v));
+  PetscCall(PetscMalloc2(3 * (size_t)n, &x, 3 * (size_t)n, &v));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x, .v = v}));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal u[3] = {0, 0, 0}, p;

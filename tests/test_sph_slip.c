@@ -39,7 +39,7 @@ static PetscErrorCode Slowest(SphSlipType slip, PetscBool pergroup, PetscReal t,
   PetscCall(SphSetUp(sph));
   PetscCall(FlowRun(sph, t));
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscMalloc1(3 * (n + nb), &v));
+  PetscCall(PetscMalloc1(3 * (size_t)(n + nb), &v));
   PetscCall(SphGetFields(sph, &(SphFields){.v = v}));
   *least = *most = v[0];
   for (PetscInt i = 0; i < n; i++) {
@@ -101,7 +101,7 @@ static PetscErrorCode Warning(void)
   PetscCall(FlowWalls(&c, sph, &group));
   PetscCall(SphSetUp(sph));
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscCalloc1(3 * (n + nb), &v));
+  PetscCall(PetscCalloc1(3 * (size_t)(n + nb), &v));
   PETSC_STDERR = file;
   PetscCall(SphComputeTimeStep(sph, &dt));
   for (PetscInt i = 0; i < n; i++) v[3 * i] = 0.4; /* 0.4 of c_s = 1 m/s */

@@ -74,7 +74,7 @@ static PetscErrorCode Create(PetscInt across, Sph *sph, Walls *b)
   PetscCall(SphSetDomain(*sph, lo, hi)); /* room for the walls to turn */
   PetscCall(SphGetSupport(*sph, &support));
   PetscCall(SphFillWalls(2, c.dp, c.lo, c.hi, c.wall, c.periodic, support, &b->n, &b->x, &volume, &depth));
-  PetscCall(PetscCalloc4(3 * b->n, &b->v, 3 * b->n, &b->a, 3 * b->n, &b->w, 3 * b->n, &b->now));
+  PetscCall(PetscCalloc4(3 * (size_t)b->n, &b->v, 3 * (size_t)b->n, &b->a, 3 * (size_t)b->n, &b->w, 3 * (size_t)b->n, &b->now));
   for (PetscInt i = 0; i < b->n; i++) Turning(b->x + 3 * i, NULL, b->v + 3 * i, NULL);
   PetscCall(SphAddBoundary(*sph, b->n, b->x, b->v, volume, depth, &b->group));
   PetscCall(SphSetUp(*sph));
@@ -109,7 +109,7 @@ static PetscErrorCode Friction(PetscBool known, double *most, double *bound)
   PetscCall(SphSetBoundaryRotation(sph, b.group, b.w));
   PetscCall(SphStepBegin(sph, 1e-12)); /* evaluates the state as it is; what 1e-12 s moves is counted below */
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscMalloc1(3 * (n + nb), &a));
+  PetscCall(PetscMalloc1(3 * (size_t)(n + nb), &a));
   PetscCall(SphGetFields(sph, &(SphFields){.a = a}));
   *most = 0.0;
   for (PetscInt i = 0; i < 3 * n; i++) *most = PetscMax(*most, PetscAbsReal(a[i]));
@@ -140,7 +140,7 @@ static PetscErrorCode Energy(PetscInt across, PetscBool known, double *error)
     PetscCall(Turn(sph, &b, t, known));
   }
   PetscCall(SphGetCounts(sph, &n, &nb, NULL));
-  PetscCall(PetscMalloc2(3 * (n + nb), &x, 3 * (n + nb), &v));
+  PetscCall(PetscMalloc2(3 * (size_t)(n + nb), &x, 3 * (size_t)(n + nb), &v));
   PetscCall(SphGetFields(sph, &(SphFields){.x = x, .v = v}));
   for (PetscInt i = 0; i < 3 * n; i++) {
     kinetic += v[i] * v[i];

@@ -369,9 +369,9 @@ PetscErrorCode AncfSetUp(Ancf ancf)
   if (ancf->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(ancf->nbeams > 0, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSetUp: no beams, call AncfAddBeam() first");
   n = 6 * ancf->nnodes;
-  PetscCall(PetscCalloc7(n + AncfDaeRoom(ancf), &ancf->e, n + AncfDaeRoom(ancf), &ancf->v, n, &ancf->a, n, &ancf->load, n,
-                         &ancf->weight, n, &ancf->steady, n, &ancf->rest));
-  PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * ancf->nnodes, &ancf->mass));
+  PetscCall(PetscCalloc7((size_t)(n + AncfDaeRoom(ancf)), &ancf->e, (size_t)(n + AncfDaeRoom(ancf)), &ancf->v, n, &ancf->a, n,
+                         &ancf->load, n, &ancf->weight, n, &ancf->steady, n, &ancf->rest));
+  PetscCall(PetscCalloc2(ancf->nnodes, &ancf->fixed, 8 * (size_t)ancf->nnodes, &ancf->mass));
   for (PetscInt k = 0; k < ancf->nsupports; k++) {
     const PetscReal *v = ancf->beams[ancf->supports[k].beam].spec.velocity;
 

@@ -87,7 +87,7 @@ PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt)
   SNES snes;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * n, &keep));
+  PetscCall(PetscMalloc1(2 * (size_t)n, &keep));
   PetscCall(PetscArraycpy(keep, ancf->e, n));
   PetscCall(PetscArraycpy(keep + n, ancf->v, n));
   PetscCall(AncfTSCounts(ancf, before));

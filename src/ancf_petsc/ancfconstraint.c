@@ -110,7 +110,7 @@ static PetscErrorCode ChooseDependent(Ancf ancf, AncfJoint *j)
   PetscReal *A;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(m * n, &A));
+  PetscCall(PetscMalloc1((size_t)m * (size_t)n, &A));
   PetscCall(PetscArraycpy(A, j->G, m * n));
   for (PetscInt c = 0; c < n; c++)
     for (PetscInt r = 0; r < m && IsFixed(ancf, AncfJointCoordinate(j, c)); r++) A[r * n + c] = 0;

@@ -67,7 +67,7 @@ PetscErrorCode AncfDaeSetUp(Ancf ancf)
       "-ancf_constraints multipliers makes a differential-algebraic equation, which -ancf_ts_type %s does not solve; use one "
       "of: alpha2 bdf beuler",
       type);
-  PetscCall(PetscCalloc2(ancf->nnodes, &ancf->nofix, 6 * ancf->nnodes, &ancf->heldrow));
+  PetscCall(PetscCalloc2(ancf->nnodes, &ancf->nofix, 6 * (size_t)ancf->nnodes, &ancf->heldrow));
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++)
     if (ancf->fixed[i / 6] & (i % 6 < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) ancf->heldrow[n++] = i;
   ancf->nheld = n;
@@ -154,7 +154,7 @@ static PetscErrorCode Couplings(Ancf ancf, PetscInt bs, const PetscReal *e, Pets
     PetscReal *H, *scaled;
     PetscInt *at;
 
-    PetscCall(PetscCalloc3(j->nloc * j->nloc, &H, j->nrows, &scaled, j->nloc, &at));
+    PetscCall(PetscCalloc3((size_t)j->nloc * (size_t)j->nloc, &H, j->nrows, &scaled, j->nloc, &at));
     for (PetscInt r = 0; r < j->nrows && lambda; r++) scaled[r] = s * lambda[row + r];
     if (lambda) {
       JointLocal(j, e, stride);
@@ -258,7 +258,7 @@ PetscErrorCode AncfDaePost(Ancf ancf)
 
   PetscFunctionBegin;
   if (!ancf->njoints) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(2 * n, &keep));
+  PetscCall(PetscMalloc1(2 * (size_t)n, &keep));
   PetscCall(PetscArraycpy(keep, ancf->e, n));
   PetscCall(PetscArraycpy(keep + n, ancf->v, n));
   PetscCall(AncfJointSync(ancf, PETSC_FALSE, NULL));

@@ -34,7 +34,7 @@ PetscErrorCode AncfSetUpDamping(Ancf ancf)
     m->EItau = m->EI * (m->spec.bendingdamping + ancf->stiffnessdamping);
     if (m->EAtau > 0 || m->EItau > 0) ancf->viscous = PETSC_TRUE;
   }
-  if (ancf->viscous) PetscCall(PetscCalloc2(3 * ancf->nbeams, &ancf->spin, 9 * ancf->nbeams, &ancf->spinsum));
+  if (ancf->viscous) PetscCall(PetscCalloc2(3 * (size_t)ancf->nbeams, &ancf->spin, 9 * (size_t)ancf->nbeams, &ancf->spinsum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

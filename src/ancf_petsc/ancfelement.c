@@ -272,7 +272,7 @@ static inline void AxialTangent(const AncfRule *rule, const AncfSection *s, Ancf
 void AncfElementTangent(const AncfRule *rule, const AncfSection *s, const AncfLanes e[12], AncfLanes Q[12],
                         AncfLanes K[ANCF_TANGENT])
 {
-  const PetscInt n = rule->bending.n;
+  const PetscInt n = PetscMax(rule->bending.n, 1); /* never below 1: the compiler sees that p is filled */
   const AncfLanes il = 1.0 / s->l, l = s->l, l2 = l * l;
   AncfLanes d[3][3], q[3][3];
   PointBlocks p[ANCF_MAX_GAUSS];

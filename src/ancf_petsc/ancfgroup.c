@@ -78,7 +78,8 @@ PetscErrorCode AncfGroupSetUp(Ancf ancf)
   PetscFunctionBegin;
   PetscCall(AncfChooseForm(ancf));
   if (ancf->form == ANCF_FORM_SECOND)
-    PetscCall(PetscCalloc3(6 * ancf->nnodes, &ancf->history, 6 * ancf->nnodes, &ancf->eprev, 6 * ancf->nnodes, &ancf->vprev));
+    PetscCall(PetscCalloc3(6 * (size_t)ancf->nnodes, &ancf->history, 6 * (size_t)ancf->nnodes, &ancf->eprev,
+                           6 * (size_t)ancf->nnodes, &ancf->vprev));
   max = 1 + ancf->nnodes / PetscMax(1, ancf->groupnodes / 2);
   PetscCall(PetscMalloc1(max, &ancf->groups));
   while (first < ancf->nbeams) {

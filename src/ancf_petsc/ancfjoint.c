@@ -150,8 +150,9 @@ static PetscErrorCode JointAllocate(AncfJoint *j)
   const PetscInt m = j->nrows, n = j->nloc;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc5(m, &j->dep, m, &j->pivot, m, &j->phi, m + n, &j->lambda, m * m, &j->LU));
-  PetscCall(PetscCalloc5(m * n, &j->G, m * n, &j->Gdot, m * n, &j->T, n, &j->x, n, &j->v));
+  PetscCall(PetscCalloc5(m, &j->dep, m, &j->pivot, m, &j->phi, (size_t)(m + n), &j->lambda, (size_t)m * (size_t)m, &j->LU));
+  PetscCall(PetscCalloc5((size_t)m * (size_t)n, &j->G, (size_t)m * (size_t)n, &j->Gdot, (size_t)m * (size_t)n, &j->T, n, &j->x, n,
+                         &j->v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,7 +169,7 @@ PetscErrorCode AncfJointSetUp(Ancf ancf)
     AncfJoint *j = &ancf->joints[k];
 
     PetscCall(JointPlaces(ancf, k));
-    PetscCall(PetscMalloc2(6 * j->n, &j->row, j->n, &j->normal));
+    PetscCall(PetscMalloc2(6 * (size_t)j->n, &j->row, j->n, &j->normal));
     j->ref = -1;
     j->linear = PETSC_TRUE;
     j->nloc = j->type == ANCF_JOINT_RIGID ? 6 * j->n : 3 * j->n;
@@ -311,7 +312,7 @@ PetscErrorCode AncfGetJointForce(Ancf ancf, PetscInt joint, PetscInt k, PetscRea
   PetscCheck(joint >= 0 && joint < ancf->njoints && k >= 0 && k < ancf->joints[joint].n, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "AncfGetJointForce: there is no joint %" PetscInt_FMT " with a node %" PetscInt_FMT, joint, k);
   j = &ancf->joints[joint];
-  PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
+  PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &r));
   PetscCall(AncfSupportForces(ancf, r, PETSC_FALSE));
   PetscCall(PetscArraycpy(f, r + 6 * j->at[k], 6));
   PetscCall(PetscFree(r));

@@ -54,7 +54,7 @@ PetscErrorCode AncfSetUpWeight(Ancf ancf)
 static PetscErrorCode AddPermanent(Ancf ancf, PetscInt node, const PetscReal w[4], const PetscReal F[3])
 {
   PetscFunctionBegin;
-  if (!ancf->permanent) PetscCall(PetscCalloc1(6 * ancf->nnodes, &ancf->permanent));
+  if (!ancf->permanent) PetscCall(PetscCalloc1(6 * (size_t)ancf->nnodes, &ancf->permanent));
   for (PetscInt i = 0; i < 4; i++)
     for (PetscInt c = 0; c < 3; c++) {
       ancf->permanent[6 * node + 3 * i + c] += w[i] * F[c];
@@ -100,7 +100,7 @@ PetscErrorCode AncfSetMoment(Ancf ancf, PetscInt beam, PetscInt node, const Pets
   PetscFunctionBegin;
   PetscCall(CheckNode(ancf, "AncfSetMoment", beam, node, M));
   if (!ancf->moment) {
-    PetscCall(PetscCalloc1(3 * ancf->nnodes, &ancf->moment));
+    PetscCall(PetscCalloc1(3 * (size_t)ancf->nnodes, &ancf->moment));
     for (PetscInt k = 0; k < ancf->ngroups; k++)
       ancf->groups[k]->moment = ancf->moment + 3 * ancf->beams[ancf->groups[k]->firstbeam].node;
   }

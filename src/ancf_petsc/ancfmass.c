@@ -112,7 +112,7 @@ PetscErrorCode AncfGetEnergy(Ancf ancf, PetscReal *kinetic, PetscReal *elastic, 
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetEnergy: call AncfSetUp() first");
-  PetscCall(PetscMalloc1(6 * ancf->nnodes, &f));
+  PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &f));
   PetscCall(AncfMassMult(ancf, ancf->v, f));
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     T += 0.5 * f[i] * ancf->v[i];
@@ -146,7 +146,7 @@ PetscErrorCode AncfGetMomentum(Ancf ancf, PetscReal p[3], PetscReal L[3])
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetMomentum: call AncfSetUp() first");
-  PetscCall(PetscMalloc1(6 * ancf->nnodes, &f));
+  PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &f));
   PetscCall(AncfMassMult(ancf, ancf->v, f));
   for (PetscInt k = 0; k < ancf->nbeams; k++) BeamTotals(&ancf->beams[k], ancf->e, f, P, H);
   PetscCall(PetscFree(f));
@@ -164,7 +164,7 @@ PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscReal L[], Pets
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetBeamBalances: call AncfSetUp() first");
-  PetscCall(PetscMalloc1(6 * ancf->nnodes, &f));
+  PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &f));
   PetscCall(AncfMassMult(ancf, ancf->v, f));
   for (PetscInt i = 0; i < n; i++) p[i] = L[i] = F[i] = T[i] = 0;
   for (PetscInt b = 0; b < ancf->nbeams; b++) BeamTotals(&ancf->beams[b], ancf->e, f, p + 3 * b, L + 3 * b);
@@ -187,7 +187,7 @@ PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3])
 
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetReaction: call AncfSetUp() first");
-  PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
+  PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &r));
   PetscCall(AncfSupportForces(ancf, r, PETSC_TRUE));
   f[0] = f[1] = f[2] = 0;
   for (PetscInt j = 0; j < ancf->nnodes; j++)

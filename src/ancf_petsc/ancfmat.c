@@ -414,7 +414,7 @@ static PetscErrorCode AncfCreateShell(Ancf ancf, Mat *J)
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
   PetscCall(PetscMalloc3(n, &s->e, ancf->nbeams, &s->first, ancf->nbeams, &s->length));
-  if (ancf->viscous) PetscCall(PetscMalloc2(n, &s->v, 3 * ancf->nbeams, &s->spin));
+  if (ancf->viscous) PetscCall(PetscMalloc2(n, &s->v, 3 * (size_t)ancf->nbeams, &s->spin));
   for (PetscInt b = 0; b < ancf->nbeams; b++) {
     s->first[b] = ancf->beams[b].node;
     s->length[b] = ancf->beams[b].spec.elements + 1;

@@ -112,9 +112,9 @@ PetscErrorCode AncfMotionCreate(Ancf ancf)
 {
   PetscFunctionBegin;
   if (ancf->motion) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(6 * ancf->nnodes, &ancf->stage, 6 * ancf->nnodes, &ancf->impulse));
-  PetscCall(PetscCalloc4(18 * ancf->nnodes, &ancf->motion, 6 * ancf->nnodes, &ancf->resta, 6 * ancf->nnodes, &ancf->restm,
-                         6 * ancf->nnodes, &ancf->restv));
+  PetscCall(PetscCalloc2(6 * (size_t)ancf->nnodes, &ancf->stage, 6 * (size_t)ancf->nnodes, &ancf->impulse));
+  PetscCall(PetscCalloc4(18 * (size_t)ancf->nnodes, &ancf->motion, 6 * (size_t)ancf->nnodes, &ancf->resta,
+                         6 * (size_t)ancf->nnodes, &ancf->restm, 6 * (size_t)ancf->nnodes, &ancf->restv));
   for (PetscInt k = 0; k < ancf->ngroups; k++) {
     const PetscInt first = ancf->beams[ancf->groups[k]->firstbeam].node;
 
@@ -230,7 +230,7 @@ PetscErrorCode AncfGetNodeReaction(Ancf ancf, PetscInt beam, PetscInt node, Pets
 
   PetscFunctionBegin;
   PetscCall(MotionNode(ancf, "AncfGetNodeReaction", beam, node, &j));
-  PetscCall(PetscMalloc1(6 * ancf->nnodes, &r));
+  PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &r));
   PetscCall(AncfGetReactions(ancf, r));
   PetscCall(PetscArraycpy(f, r + 6 * j, 6));
   PetscCall(PetscFree(r));

@@ -57,7 +57,8 @@ PetscErrorCode AncfNetworkAdd(Ancf ancf, Mat P, PetscInt n, const PetscInt coord
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++)
     if (ancf->jointof && ancf->jointof[coord[i] / 6] >= 0) most += ancf->joints[ancf->jointof[coord[i] / 6]].nloc;
-  PetscCall(PetscCalloc6(most, &idx, most, &rows, most, &cols, n * most, &S, n * most, &kS, most * most, &out));
+  PetscCall(PetscCalloc6(most, &idx, most, &rows, most, &cols, (size_t)n * (size_t)most, &S, (size_t)n * (size_t)most, &kS,
+                         (size_t)most * (size_t)most, &out));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt s = DependentRow(ancf, coord[i]);
     const AncfJoint *j = ancf->jointof && ancf->jointof[coord[i] / 6] >= 0 ? &ancf->joints[ancf->jointof[coord[i] / 6]] : NULL;
@@ -112,7 +113,7 @@ PetscErrorCode AncfNetworkGeometric(Ancf ancf, Mat P)
     PetscReal *H;
 
     if (j->linear) continue;
-    PetscCall(PetscCalloc2(j->nloc, &coord, j->nloc * j->nloc, &H));
+    PetscCall(PetscCalloc2(j->nloc, &coord, (size_t)j->nloc * (size_t)j->nloc, &H));
     AncfRowsEvaluate(j, j->x, NULL, j->phi, j->G, NULL, j->lambda, H);
     for (PetscInt c = 0; c < j->nloc; c++) coord[c] = AncfJointCoordinate(j, c);
     for (PetscInt r = 0; r < j->nloc; r++)

@@ -261,7 +261,7 @@ void AncfRestSection(const Ancf ancf, const AncfBeam *m, PetscInt node, PetscRea
 static PetscErrorCode SetUpNormals(Ancf ancf)
 {
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(3 * ancf->nnodes, &ancf->normal));
+  PetscCall(PetscCalloc1(3 * (size_t)ancf->nnodes, &ancf->normal));
   for (PetscInt b = 0; b < ancf->nbeams; b++) {
     const AncfBeam *m = &ancf->beams[b];
     const PetscReal *n = m->spec.normal, size = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -287,7 +287,7 @@ PetscErrorCode AncfSetUpRest(Ancf ancf)
   }
   if (natural || planar) PetscCall(SetUpNormals(ancf));
   if (!natural) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2((na + nb) * ancf->nnodes, &ancf->natural, 6 * ancf->nnodes, &ancf->shape));
+  PetscCall(PetscCalloc2((size_t)(na + nb) * (size_t)ancf->nnodes, &ancf->natural, 6 * (size_t)ancf->nnodes, &ancf->shape));
   PetscCall(PetscArraycpy(ancf->shape, ancf->e, 6 * ancf->nnodes));
   for (PetscInt b = 0; b < ancf->nbeams; b++) {
     const AncfBeam *m = &ancf->beams[b];

@@ -68,7 +68,7 @@ PetscErrorCode AncfSaveState(Ancf ancf)
 {
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfSaveState: call AncfSetUp() first");
-  if (!ancf->saved) PetscCall(PetscMalloc1(18 * ancf->nnodes, &ancf->saved));
+  if (!ancf->saved) PetscCall(PetscMalloc1(18 * (size_t)ancf->nnodes, &ancf->saved));
   if (ancf->restart && ancf->history && !ancf->given) { /* nothing carried yet: what the next step would start from */
     PetscCall(AncfComputeAcceleration(ancf));
     PetscCall(PetscArraycpy(ancf->history, ancf->a, 6 * ancf->nnodes));
@@ -169,7 +169,7 @@ PetscErrorCode AncfGetLoadsEnd(Ancf ancf, PetscReal **Q)
 {
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetLoadsEnd: call AncfSetUp() first");
-  if (!ancf->loadend) PetscCall(PetscMalloc1(6 * ancf->nnodes, &ancf->loadend));
+  if (!ancf->loadend) PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &ancf->loadend));
   if (!ancf->linear) PetscCall(PetscArraycpy(ancf->loadend, ancf->load, 6 * ancf->nnodes));
   *Q = ancf->loadend;
   ancf->linear = PETSC_TRUE;

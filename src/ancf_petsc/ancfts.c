@@ -498,7 +498,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PC pc;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(3 * n, &ancf->backup));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &ancf->backup));
   PetscCall(TSSetApplicationContext(ancf->ts, ancf));
   PetscCall(TSSetPreStep(ancf->ts, AncfPreStep));
   PetscCall(TSSetPreStage(ancf->ts, AncfPreStage));
@@ -518,7 +518,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
     PetscCheck(
         ancf->joints[k].linear || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
         "-ancf_ts_type basicsymplectic takes no velocities, which the rigid joint %" PetscInt_FMT " needs; use another type", k);
-  if (ancf->damping > 0) PetscCall(PetscMalloc1(6 * ancf->nnodes, &ancf->damped));
+  if (ancf->damping > 0) PetscCall(PetscMalloc1(6 * (size_t)ancf->nnodes, &ancf->damped));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));

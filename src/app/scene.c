@@ -39,7 +39,7 @@ static PetscErrorCode default_name(const char file[], char name[])
 
 static PetscErrorCode read_domain(AppScene *s, SceneSet *set)
 {
-  PetscInt buoyancy = s->buoyancy, pressure = s->pressure;
+  PetscInt buoyancy = (PetscInt)s->buoyancy, pressure = (PetscInt)s->pressure;
   char key[24][32];
   AppOpt wall[24];
   const AppOpt opt[] = {
@@ -175,7 +175,7 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
 static PetscErrorCode read_beam(const char prefix[], const char title[], SceneBeam *beam, PetscBool set[5])
 {
   AncfBeamSpec *spec = &beam->spec;
-  PetscInt end0 = spec->end0, end1 = spec->end1;
+  PetscInt end0 = (PetscInt)spec->end0, end1 = (PetscInt)spec->end1;
   PetscBool stiff[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
   PetscReal *derived[3] = {&spec->EA, &spec->EI, &spec->rhoA};
   const AppOpt opt[] = {
@@ -229,7 +229,7 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], SceneBe
 static PetscErrorCode read_body(const char prefix[], const char title[], SceneBody *body, PetscBool set[2])
 {
   RigidBodySpec *spec = &body->spec;
-  PetscInt shape = spec->shape, motion = spec->motion;
+  PetscInt shape = (PetscInt)spec->shape, motion = (PetscInt)spec->motion;
   PetscBool mass = PETSC_FALSE, inertia = PETSC_FALSE, owngravity = body->owngravity;
   const AppOpt opt[] = {
       {OPT_CHOICE, "shape", "Shape", &shape, shapes, NULL},

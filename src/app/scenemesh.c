@@ -108,7 +108,7 @@ static PetscErrorCode find_lines(Chain *c)
   c->nv = hi - c->v0;
   PetscCall(DMPlexGetHeightStratum(c->dm, 0, &lo, &hi));
   PetscCall(DMLabelGetDefaultValue(label, &none));
-  PetscCall(PetscMalloc2(2 * (hi - lo), &c->edge, hi - lo + 1, &c->pair));
+  PetscCall(PetscMalloc2(2 * (size_t)(hi - lo), &c->edge, (size_t)(hi - lo + 1), &c->pair));
   for (PetscInt e = lo; e < hi; e++) {
     const PetscInt *cone;
 
@@ -150,7 +150,7 @@ static PetscErrorCode meet(Chain *c)
   PetscReal a[3], b[3], longest = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(c->nv, &c->count, 2 * c->nv, &c->at));
+  PetscCall(PetscCalloc2(c->nv, &c->count, 2 * (size_t)c->nv, &c->at));
   for (int pass = 0; pass < 2; pass++)
     for (PetscInt e = 0; e < c->n; e++) {
       PetscCall(place(c, c->edge[2 * e], a));
@@ -213,7 +213,7 @@ static PetscErrorCode follow(Chain *c)
     done++;
   }
   if (done < c->n) PetscCall(refuse_pieces(c));
-  PetscCall(PetscMalloc1(3 * (c->n + 1), &c->x));
+  PetscCall(PetscMalloc1(3 * (size_t)(c->n + 1), &c->x));
   for (PetscInt i = 0; i <= c->n; i++) PetscCall(place(c, c->pair[i], c->x + 3 * i));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -104,7 +104,7 @@ PetscErrorCode AppSceneReadLumped(AppScene *s, PetscInt *trunks)
 static PetscErrorCode read_joint(const char prefix[], const char title[], SceneJoint *j, PetscBool set[4])
 {
   RigidJointSpec *spec = &j->spec;
-  PetscInt type = spec->type;
+  PetscInt type = (PetscInt)spec->type;
   const AppOpt opt[] = {
       {OPT_CHOICE, "type", "Kind of joint", &type, joints, NULL},
       {OPT_STRING, "a", "First body, or ground (needed)", j->a, NULL, &set[0]},

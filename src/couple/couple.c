@@ -159,16 +159,17 @@ PetscErrorCode CoupleSetUp(Couple c)
     CoupleSlot *s = &c->slot[i];
     const PetscReal *x, *volume, *depth;
     PetscCall((*s->surface->ops.getmarkers)(s->surface, &s->n, &x, &volume, &depth));
-    PetscCall(PetscCalloc4(3 * s->n, &s->x, 3 * s->n, &s->v, 3 * s->n, &s->a, 3 * s->n, &s->f));
-    if (s->surface->ops.rotation) PetscCall(PetscCalloc1(3 * s->n, &s->w));
+    PetscCall(PetscCalloc4(3 * (size_t)s->n, &s->x, 3 * (size_t)s->n, &s->v, 3 * (size_t)s->n, &s->a, 3 * (size_t)s->n, &s->f));
+    if (s->surface->ops.rotation) PetscCall(PetscCalloc1(3 * (size_t)s->n, &s->w));
     if (!s->surface->held)
-      PetscCall(PetscCalloc4(3 * s->n, &s->flast, 3 * s->n, &s->vstart, 3 * s->n, &s->alast[0], 3 * s->n, &s->alast[1]));
+      PetscCall(PetscCalloc4(3 * (size_t)s->n, &s->flast, 3 * (size_t)s->n, &s->vstart, 3 * (size_t)s->n, &s->alast[0],
+                             3 * (size_t)s->n, &s->alast[1]));
     most = PetscMax(most, s->n);
     PetscCall((*s->surface->ops.kinematics)(s->surface, 0.0, s->x, s->v, s->a));
     PetscCall(SphAddBoundary(c->sph, s->n, s->x, s->v, volume, depth, &s->group));
   }
   PetscCall(CoupleLinkSetUp(c));
-  PetscCall(PetscMalloc1(3 * most, &c->work));
+  PetscCall(PetscMalloc1(3 * (size_t)most, &c->work));
   PetscCall(SphSetUp(c->sph));
   PetscCall(CoupleMoveMarkers(c, 0.0));
   PetscCall(PetscCalloc1(4 * (size_t)PetscMax(1, c->n), &c->ledger));

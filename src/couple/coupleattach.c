@@ -201,9 +201,9 @@ PetscErrorCode CoupleAttachSetUp(CoupleAttach l)
   PetscCall(AncfGetNumNodes(l->ancf, &nodes));
   PetscCall(AncfGetPackSize(l->ancf, &nb));
   PetscCall(RigidGetPackSize(l->rigid, &nr));
-  PetscCall(PetscMalloc6(nb, &l->beams, nr, &l->bodies, 6 * nodes, &l->f0, 6 * nodes, &l->f1, 6 * nodes, &l->f2, 12 * l->nbeams,
-                         &l->balance));
-  PetscCall(PetscCalloc4(m, &l->W, m * m, &l->B, 3 * l->nfree, &l->X, m, &l->G));
+  PetscCall(PetscMalloc6(nb, &l->beams, nr, &l->bodies, 6 * (size_t)nodes, &l->f0, 6 * (size_t)nodes, &l->f1, 6 * (size_t)nodes,
+                         &l->f2, 12 * (size_t)l->nbeams, &l->balance));
+  PetscCall(PetscCalloc4(m, &l->W, (size_t)m * (size_t)m, &l->B, 3 * (size_t)l->nfree, &l->X, m, &l->G));
   PetscCall(PetscCalloc4(m, &l->R, m, &l->Rold, m, &l->s, m, &l->y));
   CoupleAttachFirstInverse(l);
   for (PetscInt i = 0; i < l->n; i++) { /* the nodes have the bodies' velocity from the start */

@@ -183,7 +183,7 @@ static PetscErrorCode Evaluate(CoupleAttach l, PetscReal t0, PetscReal t, PetscB
     PetscCall(RigidUnpack(l->rigid, l->bodies));
     PetscCall(AncfUnpack(l->ancf, l->beams));
   }
-  PetscCall(PetscMalloc2(6 * l->n, &e0, 6 * l->n, &v0));
+  PetscCall(PetscMalloc2(6 * (size_t)l->n, &e0, 6 * (size_t)l->n, &v0));
   for (PetscInt i = 0; i < l->n; i++) PetscCall(CoupleAttachFollow(l, &l->a[i], e0 + 6 * i, v0 + 6 * i));
   PetscCall(Load(l, l->W, 1));
   PetscCall(RigidAdvance(l->rigid, t));
@@ -262,7 +262,7 @@ static PetscErrorCode Differences(CoupleAttach l, PetscReal t0, PetscReal t, Pet
   PetscReal *J, *R0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(m * m, &J, m, &R0));
+  PetscCall(PetscMalloc2((size_t)m * (size_t)m, &J, m, &R0));
   PetscCall(PetscArraycpy(R0, l->R, m));
   for (PetscInt j = 0; j < m; j++) {
     const PetscReal W = l->W[j];

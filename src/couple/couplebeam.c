@@ -240,8 +240,9 @@ static PetscErrorCode CreateSurface(Beam *b, const AncfBeamSpec *spec, PetscInt 
   char name[64];
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(nd + 1, &r.rowstart, 4 * nd, &r.node, n, &r.section, nn, &r.direction));
-  PetscCall(PetscMalloc5(4 * nd, &r.shape, 4 * nd, &r.slope, 2 * n, &r.offset, n, &r.volume, n, &r.depth));
+  PetscCall(PetscMalloc4(nd + 1, &r.rowstart, 4 * (size_t)nd, &r.node, n, &r.section, nn, &r.direction));
+  PetscCall(
+      PetscMalloc5(4 * (size_t)nd, &r.shape, 4 * (size_t)nd, &r.slope, 2 * (size_t)n, &r.offset, n, &r.volume, n, &r.depth));
   PlaceMarkers(b, spec, c, &r);
   host =
       (CoupleHostSpec){dim, nn, r.direction, nd, r.rowstart, r.node, r.shape, r.slope, n, r.section, r.offset, r.volume, r.depth};

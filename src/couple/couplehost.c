@@ -192,7 +192,7 @@ static PetscErrorCode GetLink_Host(CoupleSurface surface, SphLinkSpec *spec)
 
   PetscFunctionBegin;
   if (!h->offset3) {
-    PetscCall(PetscCalloc1(3 * h->n, &h->offset3));
+    PetscCall(PetscCalloc1(3 * (size_t)h->n, &h->offset3));
     for (PetscInt i = 0; i < h->n; i++)
       for (int k = 0; k < 2; k++) h->offset3[3 * i + k] = h->offset[2 * i + k];
   }
@@ -400,9 +400,10 @@ static PetscErrorCode CopySpec(Host *h, const CoupleHostSpec *p)
   PetscCall(PetscCalloc4(ns + 1, &h->rowstart, ne, &h->node, n, &h->section, nn, &h->direction));
   PetscCall(PetscMalloc1(ne, &h->shape));
   if (p->slope) PetscCall(PetscMalloc1(ne, &h->slope));
-  PetscCall(PetscCalloc4(2 * n, &h->offset, 3 * n, &h->x0, n, &h->volume, n, &h->depth));
-  PetscCall(PetscCalloc5(3 * ns, &h->d1, 3 * nn, &h->Q, 3 * nn, &h->dQ, 3 * nn, &h->q, 3 * nn, &h->qdot));
-  PetscCall(PetscCalloc3(ns, &h->frame, 3 * n, &h->o, ne, &h->inode));
+  PetscCall(PetscCalloc4(2 * (size_t)n, &h->offset, 3 * (size_t)n, &h->x0, n, &h->volume, n, &h->depth));
+  PetscCall(PetscCalloc5(3 * (size_t)ns, &h->d1, 3 * (size_t)nn, &h->Q, 3 * (size_t)nn, &h->dQ, 3 * (size_t)nn, &h->q,
+                         3 * (size_t)nn, &h->qdot));
+  PetscCall(PetscCalloc3(ns, &h->frame, 3 * (size_t)n, &h->o, ne, &h->inode));
   PetscCall(PetscArraycpy(h->rowstart, p->rowstart, ns + 1));
   PetscCall(PetscArraycpy(h->node, p->node, ne));
   for (PetscInt e = 0; e < ne; e++) h->inode[e] = (int)p->node[e];
@@ -444,7 +445,7 @@ static PetscErrorCode PlaceMarkers(CoupleSurface surface)
     AnyNormal(h->frame[s].t, h->d1 + 3 * s);
     section_transport((int)h->dim, h->frame[s].t, h->d1 + 3 * s);
   }
-  PetscCall(PetscMalloc2(3 * h->n, &v, 3 * h->n, &a));
+  PetscCall(PetscMalloc2(3 * (size_t)h->n, &v, 3 * (size_t)h->n, &a));
   PetscCall(Kinematics_Host(surface, 0.0, h->x0, v, a));
   PetscCall(PetscFree2(v, a));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -313,8 +313,8 @@ static PetscErrorCode PlaceMarkers(CoupleSurface surface, Body *b)
   PetscReal *v, *a;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(3 * b->n, &b->x0, 3 * b->n, &b->o));
-  PetscCall(PetscMalloc2(3 * b->n, &v, 3 * b->n, &a));
+  PetscCall(PetscMalloc2(3 * (size_t)b->n, &b->x0, 3 * (size_t)b->n, &b->o));
+  PetscCall(PetscMalloc2(3 * (size_t)b->n, &v, 3 * (size_t)b->n, &a));
   PetscCall(Kinematics_Rigid(surface, 0.0, b->x0, v, a));
   PetscCall(PetscFree2(v, a));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -352,7 +352,7 @@ PetscErrorCode CoupleSurfaceCreateMoving(Rigid rigid, PetscInt body, const char 
   PetscFunctionBegin;
   PetscCall(CreateBody(rigid, body, name, &b, surface));
   b->n = n;
-  PetscCall(PetscMalloc1(3 * n, &b->xb));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &b->xb));
   PetscCall(PetscMalloc1(n, &b->volume));
   PetscCall(PetscMalloc1(n, &b->depth));
   PetscCall(PetscArraycpy(b->volume, volume, n));

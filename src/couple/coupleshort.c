@@ -282,9 +282,9 @@ PetscErrorCode CoupleShortSetUp(CoupleShort c)
   PetscCall(PetscCalloc1(c->nbeams, &c->beam));
   for (PetscInt i = 0; i < c->nbeams; i++) PetscCall(SetUpBeam(c, i));
   PetscCall(PetscCalloc2(c->nlinks, &c->link, c->nlinks, &c->next));
-  PetscCall(PetscMalloc5(6 * c->nnodes, &c->e, 6 * c->nnodes, &c->v, 3 * c->nsamples, &c->x, 2 * c->nnodes, &c->w, 2 * c->nnodes,
-                         &c->z));
-  PetscCall(PetscCalloc2(c->nbodies, &c->root, 6 * c->nbodies, &c->given));
+  PetscCall(PetscMalloc5(6 * (size_t)c->nnodes, &c->e, 6 * (size_t)c->nnodes, &c->v, 3 * (size_t)c->nsamples, &c->x,
+                         2 * (size_t)c->nnodes, &c->w, 2 * (size_t)c->nnodes, &c->z));
+  PetscCall(PetscCalloc2(c->nbodies, &c->root, 6 * (size_t)c->nbodies, &c->given));
   for (PetscInt i = 0; i < c->nbeams; i++)
     for (PetscInt k = 0; k < c->beam[i].links; k++) {
       ShortLink *l = &c->link[c->beam[i].link + k];

@@ -212,7 +212,7 @@ PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscIn
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&w));
-  PetscCall(PetscMalloc3(3 * n, &w->x, n, &w->volume, n, &w->depth));
+  PetscCall(PetscMalloc3(3 * (size_t)n, &w->x, n, &w->volume, n, &w->depth));
   PetscCall(PetscArraycpy(w->x, x, 3 * n));
   PetscCall(PetscArraycpy(w->volume, volume, n));
   PetscCall(PetscArraycpy(w->depth, depth, n));

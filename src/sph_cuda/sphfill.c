@@ -34,7 +34,7 @@ PetscErrorCode SphFillBox(PetscInt dim, PetscReal dp, const PetscReal lo[3], con
 
   PetscFunctionBegin;
   PetscCall(SitesPerAxis(dim, dp, lo, hi, n));
-  PetscCall(PetscMalloc1(3 * PetscMax(1, n[0] * n[1] * n[2]), &x));
+  PetscCall(PetscMalloc1(3 * (size_t)PetscMax(1, n[0] * n[1] * n[2]), &x));
   for (PetscInt k = 0; k < n[2]; k++)
     for (PetscInt j = 0; j < n[1]; j++)
       for (PetscInt i = 0; i < n[0]; i++) {
@@ -75,7 +75,7 @@ PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], c
     total *= b[k] - a[k];
   }
   total -= n[0] * n[1] * n[2];
-  PetscCall(PetscMalloc1(3 * PetscMax(total, 1), &x));
+  PetscCall(PetscMalloc1(3 * (size_t)PetscMax(total, 1), &x));
   PetscCall(PetscMalloc1(PetscMax(total, 1), &v));
   PetscCall(PetscMalloc1(PetscMax(total, 1), &d));
   for (PetscInt k = a[2]; k < b[2]; k++)

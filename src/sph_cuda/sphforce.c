@@ -24,7 +24,7 @@ PetscErrorCode SphSetBodyForceTable(Sph sph, PetscInt n, const PetscReal t[], co
   PetscCall(PetscFree(sph->force));
   sph->nforce = n;
   PetscCall(PetscMalloc1(n, &sph->forcetime));
-  PetscCall(PetscMalloc1(3 * n, &sph->force));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &sph->force));
   PetscCall(PetscArraycpy(sph->forcetime, t, n));
   PetscCall(PetscArraycpy(sph->force, f, 3 * n));
   SphBodyForceAt(sph, sph->t);

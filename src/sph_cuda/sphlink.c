@@ -63,7 +63,7 @@ static PetscErrorCode CopySpec(SphLink *k, const SphLinkSpec *p)
   k->nstate = p->nnodes ? 9 * k->nnodes + (p->slope ? 3 * k->nsections : 0) : SECTION_BODY_STATE;
   k->nload = p->nnodes ? 3 * k->nnodes : 6;
   PetscCall(PetscCalloc3(ns + 1, &k->rowstart, ne, &k->node, k->n, &k->section));
-  PetscCall(PetscCalloc3(ne, &k->shape, 3 * k->n, &k->offset, k->nstate, &k->state));
+  PetscCall(PetscCalloc3(ne, &k->shape, 3 * (size_t)k->n, &k->offset, k->nstate, &k->state));
   PetscCall(PetscArraycpy(k->offset, p->offset, 3 * k->n));
   if (!p->nnodes) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt s = 0; s <= ns; s++) k->rowstart[s] = (int)p->rowstart[s];
@@ -146,8 +146,9 @@ static PetscErrorCode PlaceMarkers(Sph sph, SphLink *k, PetscBool move)
 {
   PetscFunctionBegin;
   if (!k->frame) {
-    PetscCall(PetscMalloc2(k->nsections, &k->frame, SECTION_SUMS * k->nsections, &k->sums));
-    PetscCall(PetscMalloc5(3 * k->n, &k->x, 3 * k->n, &k->v, 3 * k->n, &k->a, 3 * k->n, &k->f, 3 * k->n, &k->o));
+    PetscCall(PetscMalloc2(k->nsections, &k->frame, (size_t)SECTION_SUMS * (size_t)k->nsections, &k->sums));
+    PetscCall(PetscMalloc5(3 * (size_t)k->n, &k->x, 3 * (size_t)k->n, &k->v, 3 * (size_t)k->n, &k->a, 3 * (size_t)k->n, &k->f,
+                           3 * (size_t)k->n, &k->o));
   }
   for (int s = 0; s < k->nsections; s++) SphLinkSection(k, (int)sph->par.dim, k->state, s, &k->frame[s]);
   for (int i = 0; i < k->n; i++) {

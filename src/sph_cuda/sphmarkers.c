@@ -79,7 +79,7 @@ PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share)
   }
   PetscCall(Allocate(sph, PETSC_FALSE, &sph->stn.s));
   PetscCall(Allocate(sph, PETSC_FALSE, &sph->rate.ds));
-  if (p->wall == SPH_WALL_ADAMI) PetscCall(PetscCalloc1(3 * PetscMax(1, sph->n - sph->nfluid), &sph->omega));
+  if (p->wall == SPH_WALL_ADAMI) PetscCall(PetscCalloc1(3 * (size_t)PetscMax(1, sph->n - sph->nfluid), &sph->omega));
   if (noab) {
     PetscCall(PetscFree(sph->wallratio));
     sph->wallratio = sph->zero;

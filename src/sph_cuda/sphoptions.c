@@ -177,7 +177,7 @@ PetscErrorCode SphSetDensityReinit(Sph sph, SphReinitType type, PetscInt every)
   PetscCall(CheckEditable(sph, "reinit"));
   PetscCheck(every >= 1, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "sph_reinit_every = %" PetscInt_FMT ": must be >= 1 (use sph_reinit none to switch off)", every);
-  sph->par.reinit = type;
+  sph->par.reinit = (int)type;
   sph->par.reinitevery = every;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
