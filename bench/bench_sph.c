@@ -20,6 +20,7 @@
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 typedef struct {
@@ -33,9 +34,9 @@ typedef struct {
 
 typedef struct {
   PetscInt n;
-  PetscReal wall, cpu;       /* evaluations per second, per processor second */
-  PetscReal bytes, resident; /* per marker, as counted and as held */
-  PetscReal setup, setupcpu; /* s, by the clock and of processor time */
+  PetscReal wall, cpu;             /* evaluations per second, per processor second */
+  PetscReal bytes, resident, peak; /* per marker, as counted, as held at the end, and the most that was held */
+  PetscReal setup, setupcpu;       /* s, by the clock and of processor time */
 } Result;
 
 /* DualSPHysics 5.4, two threads: marker-evaluations/s in millions; 0 where there is no figure. */
@@ -79,6 +80,13 @@ static double Resident(void)
   if (fscanf(f, "%ld %ld", &size, &pages) != 2) pages = 0;
   fclose(f);
   return 4096.0 * (double)pages;
+}
+
+/* The most that the process has held, bytes. */
+static double Peak(void)
+{
+  struct rusage u;
+  return getrusage(RUSAGE_SELF, &u) ? 0.0 : 1024.0 * (double)u.ru_maxrss;
 }
 
 /* Nodes i dp: walls on the planes x = 0, y = 0, z = 0 and at the far ends; fluid at 0.01 dp off them never, a full dp away. */
@@ -186,6 +194,7 @@ static PetscErrorCode Run(const Case *c, PetscInt warm, PetscInt steps, PetscInt
   PetscCall(SphGetWork(sph, &r->bytes, NULL));
   r->bytes /= (PetscReal)r->n;
   r->resident = (Resident() - before) / (PetscReal)r->n;
+  r->peak = (Peak() - before) / (PetscReal)r->n;
   PetscCall(SphDestroy(&sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -227,9 +236,11 @@ int main(int argc, char **argv)
   if (fill > 0.0) {
     c.dp = fill;
     PetscCall(Run(&c, 0, 0, 0, &r));
-    printf("%" PetscInt_FMT
-           " markers: filled, sorted, checked and evaluated once in %.2f s (%.2f s of processor time, %.2f us per marker)\n",
-           r.n, r.setup, r.setupcpu, 1e6 * r.setupcpu / (PetscReal)r.n);
+    printf(
+        "%" PetscInt_FMT
+        " markers: filled, sorted, checked and evaluated once in %.2f s (%.2f s of processor time, %.2f us per marker), at most "
+        "%.0f bytes per marker\n",
+        r.n, r.setup, r.setupcpu, 1e6 * r.setupcpu / (PetscReal)r.n, r.peak);
     PetscCall(PetscFinalize());
     return 0;
   }
@@ -239,8 +250,8 @@ int main(int argc, char **argv)
     c.dp = sizes[s];
     if (one) { /* what the options ask for */
       PetscCall(Run(&c, warm, steps, reps, &r));
-      printf("%8" PetscInt_FMT "  as the options say%25s%d   %6.3f  %11.3f  %8.0f  (resident %.0f)\n", r.n, "", c.threads,
-             r.wall * 1e-6, r.cpu * c.threads * 1e-6, r.bytes, r.resident);
+      printf("%8" PetscInt_FMT "  as the options say%25s%d   %6.3f  %11.3f  %8.1f  (resident %.1f, at most %.1f)\n", r.n, "",
+             c.threads, r.wall * 1e-6, r.cpu * c.threads * 1e-6, r.bytes, r.resident, r.peak);
       continue;
     }
     for (int t = 1; t <= PetscMax(2, omp_get_num_procs()); t *= 2)

@@ -153,10 +153,11 @@ static PetscErrorCode Take(Sph sph, Snapshot *t)
 
   PetscFunctionBegin;
   PetscCall((*sph->ops->pull)(sph));
-  double *from[] = {sph->st.x[0],    sph->st.x[1],    sph->st.x[2],    sph->st.v[0],   sph->st.v[1],
-                    sph->st.v[2],    sph->st.s,       sph->rate.a[0],  sph->rate.a[1], sph->rate.a[2],
-                    sph->rate.dv[0], sph->rate.dv[1], sph->rate.dv[2], sph->rate.ds,   sph->m,
-                    sph->wallratio,  sph->ab[0],      sph->ab[1],      sph->ab[2]};
+  const SphValues from[] = {{sph->st.x[0], NULL}, {sph->st.x[1], NULL}, {sph->st.x[2], NULL}, {sph->st.v[0], NULL},
+                            {sph->st.v[1], NULL}, {sph->st.v[2], NULL}, {sph->st.s, NULL},    sph->rate.a[0],
+                            sph->rate.a[1],       sph->rate.a[2],       sph->rate.dv[0],      sph->rate.dv[1],
+                            sph->rate.dv[2],      sph->rate.ds,         {sph->m, NULL},       {sph->wallratio, NULL},
+                            {sph->ab[0], NULL},   {sph->ab[1], NULL},   {sph->ab[2], NULL}};
   const int k = (int)(sizeof(to) / sizeof(to[0]));
   t->n = n;
   t->omega = sph->omega;
@@ -164,7 +165,7 @@ static PetscErrorCode Take(Sph sph, Snapshot *t)
   PetscCall(PetscMalloc2((size_t)(k * n), &t->memory, n, &t->group));
   for (int j = 0; j < k; j++) {
     *to[j] = t->memory + (size_t)j * (size_t)n;
-    for (PetscInt id = 0; id < n; id++) (*to[j])[id] = from[j][sph->slot[id]];
+    for (PetscInt id = 0; id < n; id++) (*to[j])[id] = SphValue(&from[j], sph->slot[id]);
   }
   for (PetscInt id = 0; id < n; id++) t->group[id] = sph->group[sph->slot[id]];
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -175,12 +175,12 @@ static void CheckAux(Sph sph, const Markers *k, Brute *b, const BruteSums *aux, 
     const BruteSums *o = &aux[id];
     const double tol = (2.0 * o->n + 64.0) * eps;
     if (!b->boundary[id]) {
-      for (int d = 0; d < p->dim; d++) Compare(sph->rate.dv[d][i], o->dv[d], tol * o->Adv + 1e-300, &worst[F_DV]);
+      for (int d = 0; d < p->dim; d++) Compare(SphValue(&sph->rate.dv[d], i), o->dv[d], tol * o->Adv + 1e-300, &worst[F_DV]);
     } else if (p->wall == SPH_WALL_ADAMI) {
       const double sw = o->dv[0], norm = BruteW(p->kernel, (int)p->dim, p->h, 0.0);
       if (sw < 1e-3 * norm) continue; /* the kernel sum itself has no digits there */
       for (int d = 0; d < p->dim; d++)
-        Compare(sph->rate.dv[d][i], sph->wallratio[i] * (b->v[3 * id + d] - o->wv[d] / sw),
+        Compare(SphValue(&sph->rate.dv[d], i), sph->wallratio[i] * (b->v[3 * id + d] - o->wv[d] / sw),
                 tol * sph->wallratio[i] * o->Awv / sw * 2.0 * o->n * 0.3 * norm / sw, &worst[F_WALLV]);
       Compare(BrutePressure(p, sph->st.s[i]), o->wp / sw, tol * o->Awp / sw * (1.0 + o->n * 0.3 * norm / sw), &worst[F_WALLP]);
     }
@@ -198,7 +198,7 @@ static void SecondSweepValues(const SphParams *p, const Sph sph, const Markers *
       if (!b->boundary[id])
         b->u[3 * id + d] += aux[id].dv[d];
       else if (p->wall == SPH_WALL_ADAMI)
-        b->w[3 * id + d] += sph->rate.dv[d][i]; /* checked above, where it has digits */
+        b->w[3 * id + d] += SphValue(&sph->rate.dv[d], i); /* checked above, where it has digits */
     }
     if (b->boundary[id] && p->wall == SPH_WALL_ADAMI) b->s[id] = sph->st.s[i];
   }
@@ -217,8 +217,8 @@ static void CheckMomentum(const Case *c, Sph sph, const Brute *b, const BruteSum
     bound += b->m[id] * o.A * (2.0 * o.n + 64.0) * eps;
     xbound += b->m[id] * aux[id].Adv * (2.0 * o.n + 64.0) * eps;
     for (int d = 0; d < 3; d++) {
-      p[d] += b->m[id] * sph->rate.a[d][i];
-      q[d] += b->m[id] * sph->rate.dv[d][i];
+      p[d] += b->m[id] * SphValue(&sph->rate.a[d], i);
+      q[d] += b->m[id] * SphValue(&sph->rate.dv[d], i);
     }
   }
   printf("  momentum rate of the closed box: %.2g of its bound, XSPH: %.2g\n", BruteNorm3(p) / bound,
@@ -256,8 +256,8 @@ static PetscErrorCode RunCase(const Case *c)
     const double tol = (2.0 * o.n + 64.0) * eps;
     if (o.n == 0) continue;
     terms = o.n > terms ? o.n : terms;
-    for (int d = 0; d < 3; d++) Compare(sph->rate.a[d][i], o.a[d], tol * o.A, &worst[F_A]);
-    if (!b.boundary[id] || sph->par.wall == SPH_WALL_BCE) Compare(sph->rate.ds[i], o.ds, tol * o.Ads, &worst[F_DS]);
+    for (int d = 0; d < 3; d++) Compare(SphValue(&sph->rate.a[d], i), o.a[d], tol * o.A, &worst[F_A]);
+    if (!b.boundary[id] || sph->par.wall == SPH_WALL_BCE) Compare(SphValue(&sph->rate.ds, i), o.ds, tol * o.Ads, &worst[F_DS]);
   }
   CheckMomentum(c, sph, &b, aux, eps);
   for (int shepard = 0; shepard < 2; shepard++) {

@@ -298,6 +298,40 @@ static PetscErrorCode Overlap(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* At most 200 bytes of counted memory per marker, single-precision pairs, the search structure after some steps included. */
+static PetscErrorCode Memory(void)
+{
+  const PetscReal lo[3] = {0, 0, 0}, hi[3] = {0.6, 0.5, 0.2};
+
+  PetscFunctionBegin;
+  for (int i = 0; i < 3; i++) {
+    PetscReal *x, bytes, dt;
+    PetscInt n;
+    Sph sph;
+    PetscCall(SphCreate(PETSC_COMM_SELF, &sph));
+    PetscCall(SphSetSpacing(sph, 0.01));
+    PetscCall(SphSetSmoothingRatio(sph, sqrt(3.0)));
+    PetscCall(SphSetMaxSpeed(sph, 3.0));
+    PetscCall(SphSetWall(sph, SPH_WALL_BCE));
+    PetscCall(SphSetIntegrator(sph, (SphIntegratorType)i));
+    PetscCall(SphSetDensityDiffusion(sph, SPH_DIFFUSION_MOLTENI, 0.1));
+    PetscCall(SphSetXSPH(sph, 0.0));
+    PetscCall(SphSetDomain(sph, lo, hi));
+    PetscCall(SphFillBox(3, 0.01, lo, hi, NULL, NULL, &n, &x));
+    PetscCall(SphAddFluid(sph, n, x, NULL, NULL));
+    PetscCall(PetscFree(x));
+    PetscCall(SphSetUp(sph));
+    PetscCall(SphComputeTimeStep(sph, &dt));
+    PetscCall(SphStepBegin(sph, dt));
+    PetscCall(SphStepEnd(sph));
+    PetscCall(SphGetWork(sph, &bytes, NULL));
+    printf("%s: %.1f bytes per marker, %d markers\n", SphIntegratorTypes[i], bytes / (double)n, (int)n);
+    TEST(bytes <= 200.0 * (double)n, "%s: %g bytes per marker, must be at most 200", SphIntegratorTypes[i], bytes / (double)n);
+    PetscCall(SphDestroy(&sph));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscFunctionBeginUser;
@@ -307,6 +341,7 @@ int main(int argc, char **argv)
   PetscCall(Orders());
   PetscCall(Options());
   PetscCall(Overlap());
+  PetscCall(Memory());
   PetscCall(PetscFinalize());
   return test_report();
 }

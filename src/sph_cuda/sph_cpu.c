@@ -37,6 +37,7 @@ static PetscErrorCode Destroy_CPU(Sph sph)
   if (!cpu) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(cpu->gmoved));
   PetscCall(PetscFree(cpu->cellstart));
+  PetscCall(PetscFree(cpu->firstbox));
   PetscCall(PetscFree(cpu->q));
   PetscCall(PetscFree(cpu->lists));
   PetscCall(PetscFree(cpu->boxes));
@@ -66,9 +67,12 @@ static void TakeOutLeft(Sph sph)
       if (p->periodic[k]) continue;
       if (sph->st.x[k][i] < p->lo[k] - margin || sph->st.x[k][i] > p->hi[k] + margin) {
         sph->group[i] = -2;
-        for (int d = 0; d < 3; d++)
-          sph->st.v[d][i] = sph->rate.a[d][i] = sph->rate.dv[d][i] = 0.0; /* dv may be the shared zeros */
-        sph->rate.ds[i] = 0.0;
+        for (int d = 0; d < 3; d++) {
+          sph->st.v[d][i] = 0.0;
+          SphSetValue(&sph->rate.a[d], i, 0.0);
+          SphSetValue(&sph->rate.dv[d], i, 0.0);
+        }
+        SphSetValue(&sph->rate.ds, i, 0.0);
         left++;
         break;
       }
@@ -77,12 +81,33 @@ static void TakeOutLeft(Sph sph)
   sph->left += left;
 }
 
+/* The batches of all ranges, numbered one after the other, and room for their boxes. */
+static PetscErrorCode NumberBatches(Sph sph, SphCpu *cpu)
+{
+  const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
+  const PetscInt ranges = 2 * (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2];
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree(cpu->firstbox));
+  PetscCall(PetscMalloc1(ranges, &cpu->firstbox));
+  for (PetscInt r = 0; r < ranges; r++) {
+    cpu->firstbox[r] = (int)n;
+    n += (cpu->cellstart[r + 1] - cpu->cellstart[r] + SPH_BATCH - 1) / SPH_BATCH;
+  }
+  if (n > cpu->boxcap) {
+    cpu->boxcap = n + n / 16;
+    PetscCall(PetscFree(cpu->boxes));
+    PetscCall(PetscMalloc(6 * (size_t)cpu->boxcap * real, &cpu->boxes));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Room for each thread's list and batches, and for the boxes of all batches. */
 static PetscErrorCode SizeLists(Sph sph, SphCpu *cpu)
 {
   const size_t real = sph->par.precision == SPH_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
   const PetscInt ncell = (PetscInt)cpu->grid.n[0] * cpu->grid.n[1] * cpu->grid.n[2], around = sph->par.dim == 3 ? 27 : 9;
-  const PetscInt nbox = sph->n / 16 + 2 * ncell + 17;
   PetscInt most = 0;
 
   PetscFunctionBegin;
@@ -97,13 +122,9 @@ static PetscErrorCode SizeLists(Sph sph, SphCpu *cpu)
     PetscCall(PetscFree(cpu->lists));
     PetscCall(PetscMalloc(cpu->listbytes * (size_t)cpu->threads + 64, &cpu->lists));
   }
-  if (nbox > cpu->boxcap) {
-    cpu->boxcap = nbox + nbox / 16;
-    PetscCall(PetscFree(cpu->boxes));
-    PetscCall(PetscMalloc(6 * (size_t)cpu->boxcap * real, &cpu->boxes));
-  }
+  PetscCall(NumberBatches(sph, cpu));
   sph->backendbytes = (PetscReal)((size_t)cpu->stride * (size_t)cpu->nq * real + cpu->listbytes * (size_t)cpu->threads +
-                                  (size_t)cpu->cellcap * sizeof(int) + 6 * (size_t)cpu->boxcap * real);
+                                  ((size_t)cpu->cellcap + 2 * (size_t)ncell) * sizeof(int) + 6 * (size_t)cpu->boxcap * real);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,12 +203,12 @@ SPH_INLINE double MoveStage(Sph sph, const Stage stage, double dt)
       m.v[k] = sph->st.v[k][i];
       m.xn[k] = stage == STAGE_VERLET ? m.x[k] : sph->stn.x[k][i];
       m.vn[k] = sph->stn.v[k][i];
-      m.acc[k] = k < p->dim ? sph->rate.a[k][i] + p->f[k] : 0.0;
-      m.dv[k] = sph->rate.dv[k][i];
+      m.acc[k] = k < p->dim ? SphValue(&sph->rate.a[k], i) + p->f[k] : 0.0;
+      m.dv[k] = SphValue(&sph->rate.dv[k], i);
     }
     m.s = sph->st.s[i];
     m.sn = sph->stn.s[i];
-    m.ds = sph->rate.ds[i];
+    m.ds = SphValue(&sph->rate.ds, i);
     if (stage == STAGE_HALF)
       sph_step_half(&m, fluid, dt);
     else if (stage == STAGE_RK2)
@@ -240,7 +261,7 @@ static PetscErrorCode Reinit_CPU(Sph sph)
   Sweep(sph, SPH_SWEEP_SUM);
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < sph->n; i++)
-    if (sph->group[i] == -1) sph->st.s[i] = sph->rate.ds[i];
+    if (sph->group[i] == -1) sph->st.s[i] = SphValue(&sph->rate.ds, i);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -265,7 +286,7 @@ static PetscErrorCode Motion_CPU(Sph sph, PetscInt group, const PetscReal *x, co
       r2 += d * d;
       sph->st.x[k][i] = x[o + k];
       sph->st.v[k][i] = v[o + k];
-      if (sph->ab[k] != sph->zero) sph->ab[k][i] = a ? a[o + k] : 0.0;
+      if (sph->ab[k]) sph->ab[k][i] = a ? a[o + k] : 0.0;
     }
     if (!(r2 <= far2)) far2 = isnan(r2) ? HUGE_VAL : r2;
   }
@@ -281,7 +302,7 @@ static PetscErrorCode Force_CPU(Sph sph, PetscInt group, PetscReal *f)
 #pragma omp parallel for schedule(static) if (last - first >= SERIAL)
   for (PetscInt id = first; id < last; id++) {
     const int i = sph->slot[id];
-    for (int k = 0; k < 3; k++) f[3 * (id - first) + k] = sph->m[i] * sph->rate.a[k][i];
+    for (int k = 0; k < 3; k++) f[3 * (id - first) + k] = sph->m[i] * SphValue(&sph->rate.a[k], i);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -295,7 +316,7 @@ static PetscErrorCode Limits_CPU(Sph sph, PetscReal *vmax, PetscReal *amax)
   for (PetscInt i = 0; i < sph->n; i++) {
     double v = 0.0, a = 0.0;
     for (int k = 0; k < sph->par.dim; k++) {
-      const double f = sph->group[i] == -1 ? sph->rate.a[k][i] + sph->par.f[k] : 0.0;
+      const double f = sph->group[i] == -1 ? SphValue(&sph->rate.a[k], i) + sph->par.f[k] : 0.0;
       v += sph->st.v[k][i] * sph->st.v[k][i];
       a += f * f;
     }

@@ -8,8 +8,7 @@
 enum {
   SPH_Q_X,     /* 3: position relative to the centre of the marker's cell, m */
   SPH_Q_V = 3, /* 3: velocity in the viscous term (boundary: extrapolated when wall = adami), m/s */
-  SPH_Q_M = 6, /* mass, kg */
-  SPH_Q_S,     /* rho/rho0 - 1 */
+  SPH_Q_S = 6, /* rho/rho0 - 1 */
   SPH_Q_VOL,   /* m/rho, m^3 */
   SPH_Q_P,     /* p/rho^2, Pa m^6/kg^2 */
   SPH_NQ_BASE,
@@ -22,9 +21,13 @@ enum {
 /* Markers that share one list of neighbours: compact by the order within cells. */
 #define SPH_GROUP 8
 
+/* Most markers in a batch, consecutive ones of one cell with a bounding box, sphsimd.h. */
+#define SPH_BATCH 16
+
 typedef struct {
   SphGrid grid;
   int *cellstart; /* 2 ncell + 2 offsets: fluid and boundary markers of each cell */
+  int *firstbox;  /* number of the first batch of each range r = 2 cell + kind */
   PetscInt cellcap;
   double moved;      /* bound on the displacement of any fluid marker since the last build, m */
   double *gmoved;    /* the same for each boundary group */
@@ -36,16 +39,10 @@ typedef struct {
   PetscInt nq, stride;
   void *lists; /* per thread, from the first multiple of 64 bytes on: a list and the batches around a cell, see CutMemory() */
   size_t listbytes;
-  void *boxes; /* 6 x boxcap: bounding boxes of batches of markers in the working precision */
+  void *boxes; /* 6 x boxcap: bounding boxes of batches of up to SPH_BATCH markers in the working precision */
   PetscInt boxcap;
   PetscBool built;
 } SphCpu;
-
-/* Number of the batch that begins range r = 2 cell + kind at marker i0: increasing, with room for all batches of the range. */
-static inline int SphCpuBatch(int r, int i0)
-{
-  return i0 / 16 + r;
-}
 
 /* Which sums a sweep over the markers makes. */
 typedef enum {

@@ -10,10 +10,12 @@
 #if defined(SPH_PAIRS_single)
 typedef float sphreal;
   #define SPH_NAME(name) name##_single
+  #define SPH_VALUES(a) ((a).f)
   #define SPH_SQRT sqrtf
 #else
 typedef double sphreal;
   #define SPH_NAME(name) name##_double
+  #define SPH_VALUES(a) ((a).d)
   #define SPH_SQRT sqrt
 #endif
 
@@ -34,7 +36,7 @@ typedef struct {
   Sph sph;
   const SphCpu *cpu;
   sphreal *q[SPH_NQ_MAX];
-  sphreal *box[6]; /* of batches: lo, hi; numbered by SphCpuBatch() */
+  sphreal *box[6]; /* of batches: lo, hi; numbered from firstbox of a range on */
 } Sweep;
 
 typedef void (*Kernel)(const Sweep *w, const List *l, int i);
@@ -48,7 +50,8 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
   const int uv = SphTwoVelocities(par);
 
   for (int k = 0; k < 3; k++) {
-    const double *restrict x = sph->st.x[k], *restrict v = sph->st.v[k], *restrict dv = sph->rate.dv[k];
+    const double *restrict x = sph->st.x[k], *restrict v = sph->st.v[k];
+    const sphreal *restrict dv = SPH_VALUES(sph->rate.dv[k]);
     if (!afteraux) {
       if (k >= par->dim)
         for (int i = i0; i < i1; i++) q[SPH_Q_X + k][i] = (sphreal)0;
@@ -59,7 +62,7 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
         for (int i = i0; i < i1; i++) q[SPH_Q_U + k][i] = (sphreal)v[i];
     } else {
       sphreal *restrict moved = q[(boundary ? SPH_Q_V : SPH_Q_U) + k];
-      for (int i = i0; i < i1; i++) moved[i] = (sphreal)(v[i] + dv[i]);
+      for (int i = i0; i < i1; i++) moved[i] = (sphreal)(v[i] + (double)dv[i]);
     }
   }
   if (afteraux && !boundary) return;
@@ -73,10 +76,9 @@ SPH_INLINE void PrepareRange(Sph sph, const SphCpu *cpu, sphreal *const *q, cons
     for (int i = i0; i < i1; i++) q[SPH_Q_DIF(uv)][i] = boundary ? (sphreal)0 : q[SPH_Q_VOL][i];
 }
 
-/* Bounding boxes of the batches of markers [i0,i1), which form range r, in the frame of their cell. */
-static void BoundBatches(sphreal *const *q, sphreal *const *box, int r, int i0, int i1)
+/* Bounding boxes of the batches of markers [i0,i1), the first of which has number b, in the frame of their cell. */
+static void BoundBatches(sphreal *const *q, sphreal *const *box, int b, int i0, int i1)
 {
-  int b = SphCpuBatch(r, i0);
   for (int a = i0; a < i1; a += SPH_BATCH, b++)
     for (int k = 0; k < 3; k++) {
       sphreal lo = q[k][a], hi = lo;
@@ -108,7 +110,7 @@ void SPH_NAME(SphCpuPrepare)(Sph sph, int afteraux)
     const int *s = cpu->cellstart + 2 * c, cc[3] = {c % g->n[0], c / g->n[0] % g->n[1], c / (g->n[0] * g->n[1])};
     if (s[0] < s[1]) PrepareRange(sph, cpu, q, cc, s[0], s[1], 0, afteraux);
     if (s[1] < s[2]) PrepareRange(sph, cpu, q, cc, s[1], s[2], 1, afteraux);
-    for (int kind = 0; kind < 2 && !afteraux; kind++) BoundBatches(q, box, 2 * c + kind, s[kind], s[kind + 1]);
+    for (int kind = 0; kind < 2 && !afteraux; kind++) BoundBatches(q, box, cpu->firstbox[2 * c + kind], s[kind], s[kind + 1]);
   }
 }
 
@@ -151,11 +153,11 @@ SPH_INLINE void Rates(const int kernel, const int visc, const int uv, const int 
       az += fp * dz + fv * ez;
     }
   }
-  w->sph->rate.a[0][i] = (double)ax;
-  w->sph->rate.a[1][i] = (double)ay;
-  w->sph->rate.a[2][i] = (double)az;
-  w->sph->rate.ds[i] = (1.0 + w->sph->st.s[i]) * (double)ds;
-  if (diff && w->sph->group[i] == -1) w->sph->rate.ds[i] += (double)dd;
+  const double change = diff && w->sph->group[i] == -1 ? (double)dd : 0.0;
+  SPH_VALUES(w->sph->rate.a[0])[i] = ax;
+  SPH_VALUES(w->sph->rate.a[1])[i] = ay;
+  SPH_VALUES(w->sph->rate.a[2])[i] = az;
+  SPH_VALUES(w->sph->rate.ds)[i] = (sphreal)((1.0 + w->sph->st.s[i]) * (double)ds + change);
 }
 
 /* XSPH velocity of a fluid marker, Eq. 11. */
@@ -177,9 +179,9 @@ SPH_INLINE void AuxFluid(const int kernel, const Sweep *w, const List *l, int i)
     sy += f * (VY[j] - vy);
     sz += f * (VZ[j] - vz);
   }
-  w->sph->rate.dv[0][i] = (double)(c.zeta * sx);
-  w->sph->rate.dv[1][i] = (double)(c.zeta * sy);
-  w->sph->rate.dv[2][i] = (double)(c.zeta * sz);
+  SPH_VALUES(w->sph->rate.dv[0])[i] = c.zeta * sx;
+  SPH_VALUES(w->sph->rate.dv[1])[i] = c.zeta * sy;
+  SPH_VALUES(w->sph->rate.dv[2])[i] = c.zeta * sz;
 }
 
 /* Shifting velocity of a fluid marker, at most V_max/2, added to that of Eq. 11. */
@@ -201,9 +203,9 @@ SPH_INLINE void Shift(const int kernel, const Sweep *w, const List *l, int i)
   }
   const double u = sqrt((double)(px * px + py * py + pz * pz)), most = 0.5 * par->vmax;
   const double keep = sph_shift_keep((double)div, (double)par->dim) * (u > most ? most / u : 1.0);
-  w->sph->rate.dv[0][i] += keep * (double)px;
-  w->sph->rate.dv[1][i] += keep * (double)py;
-  w->sph->rate.dv[2][i] += keep * (double)pz;
+  SPH_VALUES(w->sph->rate.dv[0])[i] += (sphreal)(keep * (double)px);
+  SPH_VALUES(w->sph->rate.dv[1])[i] += (sphreal)(keep * (double)py);
+  SPH_VALUES(w->sph->rate.dv[2])[i] += (sphreal)(keep * (double)pz);
 }
 
 /* Pressure (as density) and velocity of a boundary marker: Adami, Hu, Adams, J. Comput. Phys. 231 (2012), Eqs. 22-27. */
@@ -232,7 +234,7 @@ SPH_INLINE void AuxBoundary(const int kernel, const Sweep *w, const List *l, int
     rz += wr * dz;
   }
   if (sw <= (sphreal)1e-6) { /* no fluid near */
-    for (int k = 0; k < 3; k++) sph->rate.dv[k][i] = 0.0;
+    for (int k = 0; k < 3; k++) SPH_VALUES(sph->rate.dv[k])[i] = 0;
     sph->st.s[i] = sph_eos_inverse(-par->pb, par->B, par->gamma);
     return;
   }
@@ -244,7 +246,7 @@ SPH_INLINE void AuxBoundary(const int kernel, const Sweep *w, const List *l, int
        inv;
   sph_wall_velocity(sph->wallratio[i], (const double[3]){sph->st.v[0][i], sph->st.v[1][i], sph->st.v[2][i]}, v,
                     sph->omega + 3 * (sph->id[i] - sph->nfluid), offset, dv);
-  for (int k = 0; k < 3; k++) sph->rate.dv[k][i] = dv[k];
+  for (int k = 0; k < 3; k++) SPH_VALUES(sph->rate.dv[k])[i] = (sphreal)dv[k];
   sph->st.s[i] = sph_eos_inverse(PetscMax(p - par->pb, -0.9 * par->B), par->B, par->gamma);
 }
 
@@ -264,9 +266,9 @@ SPH_INLINE void Sum(const int kernel, const Sweep *w, const List *l, int i)
     sv += VW;
   }
   if (w->sph->par.reinit == SPH_REINIT_SHEPARD)
-    w->sph->rate.ds[i] = (double)(sm / sv);
+    SPH_VALUES(w->sph->rate.ds)[i] = sm / sv;
   else
-    w->sph->rate.ds[i] = (double)sm + (double)sv - 1.0;
+    SPH_VALUES(w->sph->rate.ds)[i] = (sphreal)((double)sm + (double)sv - 1.0);
 }
 
 /* The batches of the 27 cells around cell cc, fluid ones first, in its frame. */
@@ -282,7 +284,7 @@ static void CollectBatches(const Sweep *w, const int cc[3], SphBatches *b)
                 nz = sph_cell_neighbour(g, 2, cc[2], oz);
       if (nx < 0 || ny < 0 || nz < 0) continue;
       const int r = 2 * sph_cell_index(g, nx, ny, nz) + kind, j0 = w->cpu->cellstart[r], j1 = w->cpu->cellstart[r + 1],
-                s0 = SphCpuBatch(r, j0);
+                s0 = w->cpu->firstbox[r];
       const sphreal off[3] = {(sphreal)(ox * g->edge[0]), (sphreal)(oy * g->edge[1]), (sphreal)(oz * g->edge[2])};
       for (int a = j0, s = s0; a < j1; a += SPH_BATCH, s++, b->n++) {
         for (int k = 0; k < 3; k++) {

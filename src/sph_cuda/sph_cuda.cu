@@ -156,13 +156,13 @@ static int ListMirrors(Sph sph, const SphCudaArrays *d, Mirror *m)
   for (int k = 0; k < 3; k++) {
     MIRROR(d->st.x[k], sph->st.x[k]);
     MIRROR(d->st.v[k], sph->st.v[k]);
-    MIRROR(d->rate.a[k], sph->rate.a[k]);
-    MIRROR(d->rate.dv[k], sph->rate.dv[k]);
+    MIRROR(d->rate.a[k], sph->rate.a[k].d);
+    MIRROR(d->rate.dv[k], sph->rate.dv[k].d);
     MIRROR(d->ab[k], sph->ab[k]);
     if (old) MIRROR(d->stn.v[k], sph->stn.v[k]);
   }
   MIRROR(d->st.s, sph->st.s);
-  MIRROR(d->rate.ds, sph->rate.ds);
+  MIRROR(d->rate.ds, sph->rate.ds.d);
   if (old) MIRROR(d->stn.s, sph->stn.s);
   MIRROR(d->m, sph->m);
   MIRROR(d->wallratio, sph->wallratio);

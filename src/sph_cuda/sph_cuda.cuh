@@ -17,11 +17,16 @@ extern "C" {
 
 #define SPH_BLOCK 128 /* threads per block */
 
+/* As SphRates, in double precision. */
+typedef struct {
+  double *a[3], *dv[3], *ds;
+} SphCudaRates;
+
 /* Device pointers; n long in sorted order unless said otherwise. Passed to kernels by value. */
 typedef struct {
   int n;
   SphState st, stn;
-  SphRates rate;
+  SphCudaRates rate;
   double *m, *wallratio, *ab[3];
   double *omega; /* angular velocity at boundary markers in the order added, (n - nfluid) x 3, rad/s */
   int nfluid;

@@ -30,7 +30,7 @@ static void MarkerPower(Sph sph, const SphPairConst *c, const SphSearch *s, Pets
       double r2 = 0.0, vx = 0.0, ux = 0.0, uv = 0.0;
       for (int k = 0; k < p->dim; k++) {
         const double d = x[k] - s->x[k][b] - range[o].shift[k], v = s->v[k][j] - s->v[k][b];
-        const double u = fluid ? v : v - sph->rate.dv[k][s->marker[b]]; /* extrapolated velocity of a wall */
+        const double u = fluid ? v : v - SphValue(&sph->rate.dv[k], s->marker[b]); /* extrapolated velocity of a wall */
         r2 += d * d;
         vx += v * d;
         ux += u * d;

@@ -65,21 +65,18 @@ static inline int SortKey(Sph sph, const SphGrid *g, PetscInt i)
   return 2 * sph_cell_index(g, cx, cy, cz) + (sph->group[i] >= 0 ? 1 : 0);
 }
 
-static void PermuteDouble(double *array, double *work, const int *from, PetscInt n)
-{
-#pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];
-#pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < n; i++) array[i] = work[i];
-}
-
-static void PermuteInt(int *array, int *work, const int *from, PetscInt n)
-{
-#pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];
-#pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < n; i++) array[i] = work[i];
-}
+/* array[i] = array[from[i]] for an array of a type, or none. */
+#define SPH_PERMUTE(name, type)                                                                                                  \
+  static void name(type *array, void *scratch, const int *from, PetscInt n)                                                      \
+  {                                                                                                                              \
+    type *work = (type *)scratch;                                                                                                \
+    if (!array) return;                                                                                                          \
+    _Pragma("omp parallel for schedule(static)") for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];                      \
+    _Pragma("omp parallel for schedule(static)") for (PetscInt i = 0; i < n; i++) array[i] = work[i];                            \
+  }
+SPH_PERMUTE(PermuteDouble, double)
+SPH_PERMUTE(PermuteFloat, float)
+SPH_PERMUTE(PermuteInt, int)
 
 /* from[new slot] = old slot; the order within a key is kept, so the result is the same for any number of threads. start: nkeys+1
  * offsets. */
@@ -189,15 +186,19 @@ static void PermuteAll(Sph sph, const int *from, double *work)
 {
   const PetscInt n = sph->n;
   const int saved = sph->par.integrator == SPH_INTEGRATOR_VERLET;
-  double *const arrays[] = {sph->st.x[0],   sph->st.x[1],    sph->st.x[2],    sph->st.v[0],    sph->st.v[1],   sph->st.v[2],
-                            sph->st.s,      sph->m,          sph->wallratio,  sph->rate.ds,    sph->rate.a[0], sph->rate.a[1],
-                            sph->rate.a[2], sph->rate.dv[0], sph->rate.dv[1], sph->rate.dv[2], sph->ab[0],     sph->ab[1],
-                            sph->ab[2],     sph->stn.v[0],   sph->stn.v[1],   sph->stn.v[2],   sph->stn.s};
+  double *const arrays[] = {sph->st.x[0], sph->st.x[1],  sph->st.x[2],  sph->st.v[0], sph->st.v[1], sph->st.v[2],
+                            sph->st.s,    sph->m,        sph->ab[0],    sph->ab[1],   sph->ab[2],   sph->wallratio,
+                            sph->stn.s,   sph->stn.v[0], sph->stn.v[1], sph->stn.v[2]};
+  const SphRates *r = &sph->rate;
+  const SphValues *const rates[] = {&r->a[0], &r->a[1], &r->a[2], &r->dv[0], &r->dv[1], &r->dv[2], &r->ds};
 
-  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]) - (saved ? 0 : 4); k++)
-    if (arrays[k] != sph->zero) PermuteDouble(arrays[k], work, from, n);
-  PermuteInt(sph->group, (int *)work, from, n);
-  PermuteInt(sph->id, (int *)work, from, n);
+  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]) - (saved ? 0 : 4); k++) PermuteDouble(arrays[k], work, from, n);
+  for (size_t k = 0; k < sizeof(rates) / sizeof(rates[0]); k++) {
+    PermuteDouble(rates[k]->d, work, from, n);
+    PermuteFloat(rates[k]->f, work, from, n);
+  }
+  PermuteInt(sph->group, work, from, n);
+  PermuteInt(sph->id, work, from, n);
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < n; i++) sph->slot[sph->id[i]] = (int)i;
 }

@@ -2,7 +2,8 @@
   sphimpl.h - private: the Sph object, its parameters and the operations of a backend.
 
   State lives in structure-of-arrays form in sorted order (sphcell.h); id[] gives each slot's number in the order the
-  markers were added and slot[] is its inverse. All state is double; pair arithmetic is single or double (sph_cpupairs.c).
+  markers were added and slot[] is its inverse. All state is double; pair arithmetic and its results, the rates, are single or
+  double (sph_cpupairs.c).
 */
 #ifndef SPHIMPL_H
 #define SPHIMPL_H
@@ -56,10 +57,30 @@ typedef struct {
   double *s;    /* rho/rho0 - 1 */
 } SphState;
 
+/* One value of each marker, in double or in single precision; neither: all zero, no term reads them. */
 typedef struct {
-  double *a[3];  /* right-hand side of Eq. 5 without f; boundary: force per marker mass; m/s^2 */
-  double *dv[3]; /* XSPH velocity, Eq. 11, m/s; zero on boundaries */
-  double *ds;    /* d(rho/rho0)/dt, 1/s */
+  double *d;
+  float *f;
+} SphValues;
+
+static inline double SphValue(const SphValues *a, PetscInt i)
+{
+  return a->d ? a->d[i] : (a->f ? (double)a->f[i] : 0.0);
+}
+
+static inline void SphSetValue(const SphValues *a, PetscInt i, double value)
+{
+  if (a->d)
+    a->d[i] = value;
+  else if (a->f)
+    a->f[i] = (float)value;
+}
+
+/* What the pair sums make of the state, in their precision on the CPU: they have no more digits. */
+typedef struct {
+  SphValues a[3];  /* right-hand side of Eq. 5 without f; boundary: force per marker mass; m/s^2 */
+  SphValues dv[3]; /* XSPH velocity, Eq. 11, m/s; zero on boundaries */
+  SphValues ds;    /* d(rho/rho0)/dt, 1/s */
 } SphRates;
 
 typedef struct _SphOps {
@@ -101,15 +122,15 @@ struct _p_Sph {
   PetscInt groupcap;
   PetscInt left; /* fluid markers that left through an open side */
 
-  SphState st, stn; /* now; at the beginning of the step */
+  SphState st, stn; /* now; at the beginning of the step: arrays that no term reads are NULL */
   SphRates rate;
-  double *m;         /* mass, kg */
-  double *wallratio; /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0 */
-  double *ab[3];     /* boundary acceleration, m/s^2 */
-  double *omega;     /* angular velocity at boundary markers in the order added, (n - nfluid) x 3, rad/s; NULL without adami */
-  int *group;        /* -1 fluid, -2 left, else group */
+  double *m; /* mass, kg */
+  double
+      *wallratio; /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0; or NULL */
+  double *ab[3];  /* boundary acceleration, m/s^2, or NULL */
+  double *omega;  /* angular velocity at boundary markers in the order added, (n - nfluid) x 3, rad/s; NULL without adami */
+  int *group;     /* -1 fluid, -2 left, else group */
   int *id, *slot;
-  double *zero;           /* array of zeros that stands for those of the above that no term reads, or NULL */
   PetscReal backendbytes; /* memory of the backend on the host, bytes */
 
   PetscReal t, dt; /* time and current step, s */
@@ -153,9 +174,9 @@ FROND_VISIBLE extern PetscBool SphIsLinked(Sph sph, PetscInt group);
 extern PetscErrorCode SphLinksState(Sph sph, FrondState *s);
 extern PetscErrorCode SphLinksDestroy(Sph sph);
 
-/* sphmarkers.c: the arrays that a run needs besides those of the markers added; with share one array of zeros stands for those
- * that no term reads. */
-extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share);
+/* sphmarkers.c: the arrays that a run needs besides those of the markers added; all of them, rates in double precision, or
+ * (spare) only those that a term reads, rates in that of the pair sums. */
+extern PetscErrorCode SphAllocateArrays(Sph sph, PetscBool spare);
 extern PetscErrorCode SphFreeArrays(Sph sph);
 
 /* sphforce.c: par.f at time t (s). */

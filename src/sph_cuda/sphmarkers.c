@@ -50,69 +50,72 @@ static PetscErrorCode Reserve(Sph sph, PetscInt more)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A zeroed array, or the one of zeros that all unread arrays share. */
-static PetscErrorCode Allocate(Sph sph, PetscBool shared, double **a)
+static PetscErrorCode AllocateValues(Sph sph, PetscBool single, SphValues *a)
 {
   PetscFunctionBegin;
-  if (shared && sph->zero)
-    *a = sph->zero;
+  if (single)
+    PetscCall(PetscCalloc1(sph->cap, &a->f));
   else
-    PetscCall(PetscCalloc1(sph->cap, a));
-  if (shared) sph->zero = *a;
+    PetscCall(PetscCalloc1(sph->cap, &a->d));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SphAllocateArrays(Sph sph, PetscBool share)
+PetscErrorCode SphAllocateArrays(Sph sph, PetscBool spare)
 {
   const SphParams *p = &sph->par;
-  const PetscBool nodv = share && !SphTwoVelocities(p) ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool noab = share && p->wall != SPH_WALL_ADAMI ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool noxn = share && p->integrator == SPH_INTEGRATOR_VERLET ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool single = spare && p->precision == SPH_PRECISION_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool adami = p->wall == SPH_WALL_ADAMI ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBegin;
+  if (spare && !adami) PetscCall(PetscFree(sph->wallratio)); /* first: its memory goes to another array */
   for (int k = 0; k < 3; k++) {
-    PetscCall(Allocate(sph, noxn, &sph->stn.x[k]));
-    PetscCall(Allocate(sph, PETSC_FALSE, &sph->stn.v[k]));
-    PetscCall(Allocate(sph, PETSC_FALSE, &sph->rate.a[k]));
-    PetscCall(Allocate(sph, nodv, &sph->rate.dv[k]));
-    PetscCall(Allocate(sph, noab, &sph->ab[k]));
+    if (!spare || p->integrator != SPH_INTEGRATOR_VERLET) PetscCall(PetscCalloc1(sph->cap, &sph->stn.x[k]));
+    PetscCall(PetscCalloc1(sph->cap, &sph->stn.v[k]));
+    PetscCall(AllocateValues(sph, single, &sph->rate.a[k]));
+    if (!spare || SphTwoVelocities(p)) PetscCall(AllocateValues(sph, single, &sph->rate.dv[k]));
+    if (!spare || adami) PetscCall(PetscCalloc1(sph->cap, &sph->ab[k]));
   }
-  PetscCall(Allocate(sph, PETSC_FALSE, &sph->stn.s));
-  PetscCall(Allocate(sph, PETSC_FALSE, &sph->rate.ds));
-  if (p->wall == SPH_WALL_ADAMI) PetscCall(PetscCalloc1(3 * (size_t)PetscMax(1, sph->n - sph->nfluid), &sph->omega));
-  if (noab) {
-    PetscCall(PetscFree(sph->wallratio));
-    sph->wallratio = sph->zero;
-  }
+  PetscCall(PetscCalloc1(sph->cap, &sph->stn.s));
+  PetscCall(AllocateValues(sph, single, &sph->rate.ds));
+  if (adami) PetscCall(PetscCalloc1(3 * (size_t)PetscMax(1, sph->n - sph->nfluid), &sph->omega));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Free(Sph sph, double **a)
+/* Every array of doubles, of one value of a marker each, and every array of rates. */
+#define SPH_NDOUBLES 19
+#define SPH_NRATES 7
+static void ListArrays(Sph sph, double **doubles[SPH_NDOUBLES], SphValues *rates[SPH_NRATES])
 {
-  PetscFunctionBegin;
-  if (*a != sph->zero) PetscCall(PetscFree(*a));
-  *a = NULL;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  int n = 0, r = 0;
+
+  for (int k = 0; k < 3; k++) {
+    doubles[n++] = &sph->st.x[k];
+    doubles[n++] = &sph->st.v[k];
+    doubles[n++] = &sph->stn.x[k];
+    doubles[n++] = &sph->stn.v[k];
+    doubles[n++] = &sph->ab[k];
+    rates[r++] = &sph->rate.a[k];
+    rates[r++] = &sph->rate.dv[k];
+  }
+  doubles[n++] = &sph->st.s;
+  doubles[n++] = &sph->stn.s;
+  doubles[n++] = &sph->m;
+  doubles[n++] = &sph->wallratio;
+  rates[r++] = &sph->rate.ds;
 }
 
 PetscErrorCode SphFreeArrays(Sph sph)
 {
+  double **doubles[SPH_NDOUBLES];
+  SphValues *rates[SPH_NRATES];
+
   PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) {
-    PetscCall(Free(sph, &sph->st.x[k]));
-    PetscCall(Free(sph, &sph->st.v[k]));
-    PetscCall(Free(sph, &sph->stn.x[k]));
-    PetscCall(Free(sph, &sph->stn.v[k]));
-    PetscCall(Free(sph, &sph->rate.a[k]));
-    PetscCall(Free(sph, &sph->rate.dv[k]));
-    PetscCall(Free(sph, &sph->ab[k]));
+  ListArrays(sph, doubles, rates);
+  for (int k = 0; k < SPH_NDOUBLES; k++) PetscCall(PetscFree(*doubles[k]));
+  for (int k = 0; k < SPH_NRATES; k++) {
+    PetscCall(PetscFree(rates[k]->d));
+    PetscCall(PetscFree(rates[k]->f));
   }
-  PetscCall(Free(sph, &sph->st.s));
-  PetscCall(Free(sph, &sph->stn.s));
-  PetscCall(Free(sph, &sph->rate.ds));
-  PetscCall(Free(sph, &sph->m));
-  PetscCall(Free(sph, &sph->wallratio));
-  PetscCall(PetscFree(sph->zero));
   PetscCall(PetscFree(sph->omega));
   PetscCall(PetscFree(sph->group));
   PetscCall(PetscFree(sph->id));
@@ -226,7 +229,7 @@ PetscErrorCode SphGetFields(Sph sph, const SphFields *f)
     for (int k = 0; k < 3; k++) {
       if (f->x) f->x[3 * id + k] = sph->st.x[k][i];
       if (f->v) f->v[3 * id + k] = sph->st.v[k][i];
-      if (f->a) f->a[3 * id + k] = sph->rate.a[k][i];
+      if (f->a) f->a[3 * id + k] = SphValue(&sph->rate.a[k], i);
     }
     if (f->rho) f->rho[id] = p->rho0 * (1.0 + sph->st.s[i]);
     if (f->p) f->p[id] = sph_eos(sph->st.s[i], p->B, p->gamma) + p->pb;
@@ -290,16 +293,15 @@ PetscErrorCode SphGetSums(Sph sph, SphSums *out)
 
 PetscErrorCode SphGetWork(Sph sph, PetscReal *bytes, PetscReal *evaluations)
 {
-  double *const arrays[] = {sph->st.x[0],    sph->st.x[1],    sph->st.x[2],   sph->st.v[0],   sph->st.v[1],   sph->st.v[2],
-                            sph->st.s,       sph->stn.x[0],   sph->stn.x[1],  sph->stn.x[2],  sph->stn.v[0],  sph->stn.v[1],
-                            sph->stn.v[2],   sph->stn.s,      sph->rate.a[0], sph->rate.a[1], sph->rate.a[2], sph->rate.dv[0],
-                            sph->rate.dv[1], sph->rate.dv[2], sph->rate.ds,   sph->ab[0],     sph->ab[1],     sph->ab[2],
-                            sph->m,          sph->wallratio};
-  PetscReal doubles = sph->zero ? 1.0 : 0.0;
+  double **doubles[SPH_NDOUBLES];
+  SphValues *rates[SPH_NRATES];
+  size_t each = 3 * sizeof(int);
 
   PetscFunctionBegin;
-  for (size_t k = 0; k < sizeof(arrays) / sizeof(arrays[0]); k++) doubles += arrays[k] != sph->zero;
-  if (bytes) *bytes = (PetscReal)sph->cap * (doubles * sizeof(double) + 3.0 * sizeof(int)) + sph->backendbytes;
+  ListArrays(sph, doubles, rates);
+  for (int k = 0; k < SPH_NDOUBLES; k++) each += *doubles[k] ? sizeof(double) : 0;
+  for (int k = 0; k < SPH_NRATES; k++) each += rates[k]->d ? sizeof(double) : (rates[k]->f ? sizeof(float) : 0);
+  if (bytes) *bytes = (PetscReal)sph->cap * (PetscReal)each + sph->backendbytes;
   if (bytes && sph->omega) *bytes += 3.0 * sizeof(double) * (PetscReal)(sph->n - sph->nfluid);
   if (evaluations) *evaluations = sph->evaluations;
   PetscFunctionReturn(PETSC_SUCCESS);

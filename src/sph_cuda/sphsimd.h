@@ -8,7 +8,7 @@
 #ifndef SPHSIMD_H
 #define SPHSIMD_H
 
-#define SPH_BATCH 16
+#include "sph_cpu.h"
 
 /* Bounding box of a group, m. */
 typedef struct {

@@ -39,30 +39,47 @@ static PetscErrorCode MoveCounts(Sph sph, FrondState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nothing is loaded into the array of zeros that stands for those that no term reads. */
-static PetscErrorCode MoveArray(Sph sph, FrondState *s, const char name[], double *x)
+/* As doubles, whatever they are kept as, and zeros where there is nothing: every backend and precision reads the same arrays. */
+static PetscErrorCode MoveValues(Sph sph, FrondState *s, const char name[], const SphValues *x)
 {
-  double *skip = NULL;
+  double *wide = NULL;
 
   PetscFunctionBegin;
-  if (s->way == FROND_STATE_LOAD && x == sph->zero) {
-    PetscCall(PetscMalloc1(sph->n, &skip));
-    x = skip;
-  }
-  FrondMoveReal(s, name, x, sph->n);
-  PetscCall(PetscFree(skip));
+  if (!x->d && s->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(sph->n, &wide));
+  for (PetscInt i = 0; i < sph->n && wide && s->way == FROND_STATE_SAVE; i++) wide[i] = SphValue(x, i);
+  FrondMoveReal(s, name, x->d ? x->d : wide, sph->n);
+  for (PetscInt i = 0; i < sph->n && wide && s->way == FROND_STATE_LOAD; i++) SphSetValue(x, i, wide[i]);
+  PetscCall(PetscFree(wide));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MoveVector(Sph sph, FrondState *s, const char stem[], double *const x[3])
+static PetscErrorCode MoveArray(Sph sph, FrondState *s, const char name[], double *x)
+{
+  const SphValues values = {x, NULL};
+
+  PetscFunctionBegin;
+  PetscCall(MoveValues(sph, s, name, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MoveRates(Sph sph, FrondState *s, const char stem[], const SphValues x[3])
 {
   char name[64];
 
   PetscFunctionBegin;
   for (int k = 0; k < 3; k++) {
     PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%s_%c", stem, "xyz"[k]));
-    PetscCall(MoveArray(sph, s, name, x[k]));
+    PetscCall(MoveValues(sph, s, name, &x[k]));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MoveVector(Sph sph, FrondState *s, const char stem[], double *const x[3])
+{
+  const SphValues values[3] = {{x[0], NULL}, {x[1], NULL}, {x[2], NULL}};
+
+  PetscFunctionBegin;
+  PetscCall(MoveRates(sph, s, stem, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,9 +101,9 @@ PetscErrorCode SphMoveState(Sph sph, FrondState *s)
     PetscCall(MoveVector(sph, s, "old_velocity", sph->stn.v));
     PetscCall(MoveArray(sph, s, "fluid/old_compression", sph->stn.s));
   }
-  PetscCall(MoveVector(sph, s, "acceleration", sph->rate.a));
-  PetscCall(MoveVector(sph, s, "xsph_velocity", sph->rate.dv));
-  PetscCall(MoveArray(sph, s, "fluid/compression_rate", sph->rate.ds));
+  PetscCall(MoveRates(sph, s, "acceleration", sph->rate.a));
+  PetscCall(MoveRates(sph, s, "xsph_velocity", sph->rate.dv));
+  PetscCall(MoveValues(sph, s, "fluid/compression_rate", &sph->rate.ds));
   PetscCall(MoveVector(sph, s, "boundary_acceleration", sph->ab));
   PetscCall(MoveArray(sph, s, "fluid/mass", sph->m));
   PetscCall(MoveArray(sph, s, "fluid/wall_ratio", sph->wallratio));
