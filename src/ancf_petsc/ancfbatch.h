@@ -3,6 +3,7 @@
 #define ANCFBATCH_H
 
 #include "ancfimpl.h"
+#include "lanes.h"
 
 /* Coordinates x of a node as the beams see them: eliminated ones are replaced by fix (NULL: zero). */
 static inline void AncfGather(const Ancf ancf, const AncfBatch *b, const PetscReal *x, PetscInt stride, const PetscReal *fix,
@@ -54,18 +55,24 @@ static inline void AncfClearFixed(const Ancf ancf, const AncfBatch *b, PetscInt 
 static inline void AncfGatherLane(const Ancf ancf, const AncfLaneBeams *b, PetscInt k, const PetscReal *x, PetscInt stride,
                                   const PetscReal *fix, AncfLanes out[6])
 {
+  static const PetscReal zero[6] = {0};
   const PetscBool full = k <= b->least ? PETSC_TRUE : PETSC_FALSE;
-  unsigned char any = 0;
 
-  if (PetscLikely(full)) { /* no branch between the lanes */
+  if (PetscLikely(full)) { /* no branch between the lanes; what is clamped is read elsewhere */
     const PetscReal *p[ANCF_LANES];
+    PetscBool part = PETSC_FALSE;
 
     for (int i = 0; i < ANCF_LANES; i++) {
-      p[i] = x + (b->first[i] + k) * stride;
-      any |= ancf->fixed[b->first[i] + k];
+      const PetscInt j = b->first[i] + k;
+      const unsigned char f = ancf->fixed[j] & (ANCF_FIX_POSITION | ANCF_FIX_GRADIENT);
+
+      p[i] = PetscLikely(!f) ? x + j * stride : fix ? fix + 6 * j : zero;
+      if (f && f != (ANCF_FIX_POSITION | ANCF_FIX_GRADIENT)) part = PETSC_TRUE;
     }
-    for (int c = 0; c < 6; c++) out[c] = (AncfLanes){p[0][c], p[1][c], p[2][c], p[3][c], p[4][c], p[5][c], p[6][c], p[7][c]};
-    if (PetscLikely(!any)) return;
+    if (PetscLikely(!part)) {
+      LanesGather(6, p, out);
+      return;
+    }
   }
   for (int i = 0; i < ANCF_LANES; i++) {
     const PetscInt j = b->first[i] + k;
@@ -73,9 +80,24 @@ static inline void AncfGatherLane(const Ancf ancf, const AncfLaneBeams *b, Petsc
 
     if (k > b->elements[i]) continue;
     f = ancf->fixed[j];
-    for (int c = 0; c < 6 && !full; c++) out[c][i] = x[j * stride + c];
+    for (int c = 0; c < 6; c++) out[c][i] = x[j * stride + c];
     for (int c = f & ANCF_FIX_POSITION ? 0 : 3; c < (f & ANCF_FIX_GRADIENT ? 6 : 3); c++) out[c][i] = fix ? fix[6 * j + c] : 0;
   }
+}
+
+/* Adds Q to node k of each lane's beam; lanes past their end add nothing. */
+static inline void AncfScatterLane(const AncfLaneBeams *b, PetscInt k, const AncfLanes Q[6], PetscReal *f, PetscInt stride)
+{
+  if (PetscLikely(k <= b->least)) {
+    PetscReal *p[ANCF_LANES];
+
+    for (int i = 0; i < ANCF_LANES; i++) p[i] = f + (b->first[i] + k) * stride;
+    LanesScatter(6, Q, p, 1);
+    return;
+  }
+  for (int i = 0; i < ANCF_LANES; i++)
+    if (k <= b->elements[i])
+      for (int c = 0; c < 6; c++) f[(b->first[i] + k) * stride + c] += Q[c][i];
 }
 
 /* Lanes without an element k: no stiffness, no mass, and a straight element of unit length, so that nothing divides by zero. */

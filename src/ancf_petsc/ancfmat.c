@@ -19,6 +19,7 @@ typedef struct {
   PetscReal *v, *spin, gv;   /* internal damping: velocities, spin, shift of its dQ/dv */
   PetscBool identity;        /* diag times the identity, nothing else */
   PetscInt *first, *length;  /* chains of the source */
+  PetscInt *lanes;           /* by the first chain of a batch: its place in ancf->lanebeams; NULL without these */
   BlockTriSource source;
 } AncfShell;
 
@@ -244,24 +245,34 @@ static inline void ShellAdd(const AncfLanes K[ANCF_TANGENT], AncfLanes m[4][4], 
   }
 }
 
-/* Identity rows of eliminated coordinates and of rows past the end of a lane's beam. */
-static void ShellFix(const AncfShell *s, const PetscInt chain[ANCF_LANES], PetscInt nrows, AncfLanes *D, AncfLanes *U)
-{
-  for (int i = 0; i < ANCF_LANES; i++)
-    for (PetscInt j = 0; j < nrows; j++) {
-      const PetscBool past = chain[i] < 0 || j >= s->length[chain[i]] ? PETSC_TRUE : PETSC_FALSE;
-      const unsigned char fix = past ? ANCF_FIX_POSITION | ANCF_FIX_GRADIENT : s->ancf->fixed[s->first[chain[i]] + j];
+typedef __typeof__((AncfLanes){0} == (AncfLanes){0}) ShellMask;
+#define SHELL_KEEP(mask, x) ((AncfLanes)((mask) & (ShellMask)(x)))
 
-      if (PetscLikely(!fix)) continue;
-      for (int r = fix & ANCF_FIX_POSITION ? 0 : 3; r < (fix & ANCF_FIX_GRADIENT ? 6 : 3); r++) {
-        for (int c = 0; c < 6; c++) {
-          D[36 * j + 6 * r + c][i] = D[36 * j + 6 * c + r][i] = 0;
-          if (j + 1 < nrows) U[36 * j + 6 * r + c][i] = 0;
-          if (j > 0) U[36 * (j - 1) + 6 * c + r][i] = 0;
-        }
-        D[36 * j + 7 * r][i] = past ? 1 : s->diag;
-      }
+/* Identity rows of eliminated coordinates and of rows past the end of a lane's beam; only upper triangles of D are read. */
+static void ShellFix(const AncfShell *s, const AncfLaneBeams *b, PetscInt nrows, AncfLanes *D, AncfLanes *U)
+{
+  for (PetscInt j = 0; j < nrows; j++) {
+    ShellMask keep[2];
+    AncfLanes diag = {0}, *Dj = D + 36 * j, *Uj = U + 36 * j;
+    unsigned char any = 0;
+
+    for (int i = 0; i < ANCF_LANES && j <= b->least; i++) any |= s->ancf->fixed[b->first[i] + j];
+    if (PetscLikely(!any && j <= b->least)) continue;
+    for (int i = 0; i < ANCF_LANES; i++) {
+      const PetscBool past = j > b->elements[i] ? PETSC_TRUE : PETSC_FALSE;
+      const unsigned char fix = past ? ANCF_FIX_POSITION | ANCF_FIX_GRADIENT : s->ancf->fixed[b->first[i] + j];
+
+      keep[0][i] = fix & ANCF_FIX_POSITION ? 0 : -1;
+      keep[1][i] = fix & ANCF_FIX_GRADIENT ? 0 : -1;
+      diag[i] = past ? 1 : s->diag;
     }
+    for (int r = 0; r < 6; r++) {
+      for (int c = r; c < 6; c++) Dj[6 * r + c] = SHELL_KEEP(keep[r / 3] & keep[c / 3], Dj[6 * r + c]);
+      Dj[7 * r] += SHELL_KEEP(~keep[r / 3], diag);
+      for (int c = 0; c < 6 && j + 1 < nrows; c++) Uj[6 * r + c] = SHELL_KEEP(keep[r / 3], Uj[6 * r + c]);
+      for (int c = 0; c < 6 && j > 0; c++) Uj[6 * r + c - 36] = SHELL_KEEP(keep[c / 3], Uj[6 * r + c - 36]);
+    }
+  }
 }
 
 /* The symmetric part of the tangent of the moments: Newton's method corrects the rest. */
@@ -281,10 +292,18 @@ static void ShellMoments(const AncfShell *s, const PetscInt chain[ANCF_LANES], P
     }
 }
 
-/* The chains of a batch as beams in lanes; those of PCBLOCKTRI come longest first. */
+/* The chains of a batch as beams in lanes; those of PCBLOCKTRI come longest first, like the set's own if there are enough. */
 static inline AncfLaneBeams ShellLanes(const AncfShell *s, const PetscInt chain[ANCF_LANES])
 {
   AncfLaneBeams b;
+  PetscBool same = s->lanes ? PETSC_TRUE : PETSC_FALSE;
+
+  if (same) {
+    b = s->ancf->lanebeams[s->lanes[chain[0]]];
+    for (int i = 0; i < ANCF_LANES; i++)
+      if (b.first[i] != (chain[i] < 0 ? -1 : s->first[chain[i]])) same = PETSC_FALSE;
+    if (PetscLikely(same)) return b;
+  }
 
   for (int i = 0; i < ANCF_LANES; i++) {
     const PetscBool used = chain[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -344,7 +363,7 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
     for (int c = 0; c < 6; c++) e[c] = e[6 + c];
   }
   if (s->ancf->moment) ShellMoments(s, chain, nrows, D);
-  ShellFix(s, chain, nrows, D, U);
+  ShellFix(s, &b, nrows, D, U);
 }
 
 static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
@@ -401,6 +420,7 @@ static PetscErrorCode ShellDestroy(Mat A)
   PetscFunctionBegin;
   PetscCall(MatShellGetContext(A, &s));
   PetscCall(PetscFree3(s->e, s->first, s->length));
+  PetscCall(PetscFree(s->lanes));
   PetscCall(PetscFree2(s->v, s->spin));
   PetscCall(PetscFree(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -420,6 +440,10 @@ static PetscErrorCode AncfCreateShell(Ancf ancf, Mat *J)
     s->length[b] = ancf->beams[b].spec.elements + 1;
   }
   s->ancf = ancf;
+  if (ancf->lanebeams) {
+    PetscCall(PetscCalloc1(ancf->nbeams, &s->lanes));
+    for (PetscInt k = 0; k < ancf->nlanebeams; k++) s->lanes[AncfFindBeam(ancf, ancf->lanebeams[k].first[0])] = k;
+  }
   s->source = (BlockTriSource){ancf->nbeams, s->first, s->length, ShellFill, s};
   PetscCall(MatCreateShell(ancf->comm, n, n, n, n, s, J));
   PetscCall(MatSetBlockSize(*J, 6));

@@ -88,9 +88,7 @@ static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e,
       x[c] = x[6 + c];
       y[c] = y[6 + c];
     }
-    for (int i = 0; i < ANCF_LANES; i++)
-      if (k <= b->elements[i])
-        for (int c = 0; c < 6; c++) f[(b->first[i] + k) * fstride + c] += Q[c][i];
+    AncfScatterLane(b, k, Q, f, fstride);
   }
 }
 

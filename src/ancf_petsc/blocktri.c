@@ -1,5 +1,6 @@
 /* blocktri.c - PCBLOCKTRI: batched block-tridiagonal elimination, see blocktri.h. */
 #include "blocktri.h"
+#include "lanes.h"
 #include <stdlib.h>
 #if defined(_OPENMP)
   #include <omp.h>
@@ -62,65 +63,91 @@ static inline __attribute__((always_inline)) void Subtract(const int bs, const i
       for (int c = 0; c < nx; c++) C[nx * i + c] -= A[bs * i + k] * B[nx * k + c];
 }
 
+/* Loops over entries of the blocks of beams, whose indices must be known to the compiler: the entries then stay in registers. */
+#define EACH _Pragma("GCC unroll 6") for
+#define SMALL 6
+
 /* A = L D L^T of a symmetric matrix given by its upper triangle: row k then holds column k of L, the diagonal 1/D. Sums stay in
    registers here and below: a sum kept in memory would wait for its own store. */
 static inline __attribute__((always_inline)) void LDL(const int bs, Lanes *A)
 {
-  for (int i = 0; i < bs; i++) {
-    Lanes d = A[bs * i + i];
+  Lanes local[SMALL * SMALL], *a = bs == SMALL ? local : A;
 
-    for (int k = 0; k < i; k++) d -= A[bs * k + i] * A[bs * k + i] * A[bs * k + k]; /* rows above hold D L^T until the end */
-    A[bs * i + i] = d = 1.0 / d;
-    for (int j = i + 1; j < bs; j++) {
-      Lanes a = A[bs * i + j];
+  EACH(int i = 0; i < bs && a != A; i++) EACH(int j = i; j < bs; j++) a[bs * i + j] = A[bs * i + j];
+  EACH(int i = 0; i < bs; i++)
+  {
+    Lanes d = a[bs * i + i];
 
-      for (int k = 0; k < i; k++) a -= A[bs * k + i] * A[bs * k + k] * A[bs * k + j];
-      A[bs * i + j] = a;
+    EACH(int k = 0; k < i; k++) d -= a[bs * k + i] * a[bs * k + i] * a[bs * k + k]; /* rows above hold D L^T until the end */
+    a[bs * i + i] = d = 1.0 / d;
+    EACH(int j = i + 1; j < bs; j++)
+    {
+      Lanes x = a[bs * i + j];
+
+      EACH(int k = 0; k < i; k++) x -= a[bs * k + i] * a[bs * k + k] * a[bs * k + j];
+      a[bs * i + j] = x;
     }
   }
-  for (int i = 0; i < bs; i++)
-    for (int j = i + 1; j < bs; j++) A[bs * i + j] *= A[bs * i + i];
+  EACH(int i = 0; i < bs; i++)
+  {
+    EACH(int j = i + 1; j < bs; j++) A[bs * i + j] = a[bs * i + j] * a[bs * i + i];
+    A[bs * i + i] = a[bs * i + i];
+  }
 }
 
 /* X := L^-1 X */
 static inline __attribute__((always_inline)) void LowerSolve(const int bs, const int nx, const Lanes *A, Lanes *X)
 {
-  for (int i = 1; i < bs; i++)
-    for (int c = 0; c < nx; c++) {
+  Lanes local[SMALL * SMALL];
+  const Lanes *l = bs == SMALL ? local : A;
+
+  EACH(int i = 0; i < bs && l != A; i++) EACH(int j = i + 1; j < bs; j++) local[bs * i + j] = A[bs * i + j];
+  for (int c = 0; c < nx; c++) {
+    EACH(int i = 1; i < bs; i++)
+    {
       Lanes x = X[nx * i + c];
 
-      for (int k = 0; k < i; k++) x -= A[bs * k + i] * X[nx * k + c];
+      EACH(int k = 0; k < i; k++) x -= l[bs * k + i] * X[nx * k + c];
       X[nx * i + c] = x;
     }
+  }
 }
 
-/* Eliminates a row: upper triangle of C -= W^T D^-1 W, z1 -= W^T D^-1 z0; V is work space of the size of W. */
+/* Eliminates a row: upper triangle of C -= W^T D^-1 W, z1 -= W^T D^-1 z0. */
 static inline __attribute__((always_inline)) void Eliminate(const int bs, const Lanes *A, const Lanes *W, Lanes *C,
-                                                            const Lanes *z0, Lanes *z1, Lanes *V)
+                                                            const Lanes *z0, Lanes *z1)
 {
-  for (int k = 0; k < bs; k++)
-    for (int i = 0; i < bs; i++) V[bs * k + i] = W[bs * k + i] * A[bs * k + k];
-  for (int i = 0; i < bs; i++) {
-    Lanes z = z1[i];
+  Lanes local[SMALL * SMALL], rhs[SMALL], *c = bs == SMALL ? local : C, *z = bs == SMALL ? rhs : z1;
 
-    for (int k = 0; k < bs; k++) z -= V[bs * k + i] * z0[k];
-    z1[i] = z;
-    for (int j = i; j < bs; j++) {
-      Lanes c = C[bs * i + j];
+  EACH(int i = 0; i < bs && c != C; i++)
+  {
+    z[i] = z1[i];
+    EACH(int j = i; j < bs; j++) c[bs * i + j] = C[bs * i + j];
+  }
+  for (int k = 0; k < bs; k++) {
+    EACH(int i = 0; i < bs; i++)
+    {
+      const Lanes v = W[bs * k + i] * A[bs * k + k];
 
-      for (int k = 0; k < bs; k++) c -= V[bs * k + i] * W[bs * k + j];
-      C[bs * i + j] = c;
+      z[i] -= v * z0[k];
+      EACH(int j = i; j < bs; j++) c[bs * i + j] -= v * W[bs * k + j];
     }
+  }
+  EACH(int i = 0; i < bs && c != C; i++)
+  {
+    z1[i] = z[i];
+    EACH(int j = i; j < bs; j++) C[bs * i + j] = c[bs * i + j];
   }
 }
 
 /* z := L^-T D^-1 z */
 static inline __attribute__((always_inline)) void UpperSolve(const int bs, const Lanes *A, Lanes *z)
 {
-  for (int i = bs - 1; i >= 0; i--) {
+  EACH(int i = bs - 1; i >= 0; i--)
+  {
     Lanes x = z[i] * A[bs * i + i];
 
-    for (int k = i + 1; k < bs; k++) x -= A[bs * i + k] * z[k];
+    EACH(int k = i + 1; k < bs; k++) x -= A[bs * i + k] * z[k];
     z[i] = x;
   }
 }
@@ -132,7 +159,7 @@ static inline __attribute__((always_inline)) void Gather(const int bs, const Bat
     const PetscScalar *s[BLOCKTRI_LANES];
 
     for (int i = 0; i < BLOCKTRI_LANES; i++) s[i] = x + (b->first[i] + row) * bs;
-    for (int c = 0; c < bs; c++) y[c] = (Lanes){s[0][c], s[1][c], s[2][c], s[3][c], s[4][c], s[5][c], s[6][c], s[7][c]};
+    LanesGather(bs, s, y);
     return;
   }
   for (int i = 0; i < BLOCKTRI_LANES; i++) {
@@ -148,6 +175,13 @@ static inline __attribute__((always_inline)) void Gather(const int bs, const Bat
 static inline __attribute__((always_inline)) void Scatter(const int bs, const Batch *b, PetscInt row, const Lanes *y,
                                                           PetscScalar *x)
 {
+  if (row < b->shortest) {
+    PetscScalar *s[BLOCKTRI_LANES];
+
+    for (int i = 0; i < BLOCKTRI_LANES; i++) s[i] = x + (b->first[i] + row) * bs;
+    LanesScatter(bs, y, s, 0);
+    return;
+  }
   for (int i = 0; i < BLOCKTRI_LANES; i++)
     if (row < b->length[i])
       for (int c = 0; c < bs; c++) x[(b->first[i] + row) * bs + c] = y[c][i];
@@ -161,7 +195,7 @@ static inline __attribute__((always_inline)) void FusedBatch(const int bs, const
                                                              const PetscScalar *x, PetscScalar *y)
 {
   const PetscInt n = b->nrows, m = bs * bs;
-  Lanes *D = work, *U = D + n * m, *z = U + n * m, *V = z + n * bs;
+  Lanes *D = work, *U = D + n * m, *z = U + n * m;
 
   s->fill(s->ctx, b->chain, n, D, U);
   Gather(bs, b, 0, x, z);
@@ -171,7 +205,7 @@ static inline __attribute__((always_inline)) void FusedBatch(const int bs, const
     if (j + 1 == n) break;
     LowerSolve(bs, bs, D + j * m, U + j * m);
     Gather(bs, b, j + 1, x, z + (j + 1) * bs);
-    Eliminate(bs, D + j * m, U + j * m, D + (j + 1) * m, z + j * bs, z + (j + 1) * bs, V);
+    Eliminate(bs, D + j * m, U + j * m, D + (j + 1) * m, z + j * bs, z + (j + 1) * bs);
   }
   for (PetscInt j = n - 1; j >= 0; j--) {
     if (j + 1 < n) Subtract(bs, 1, U + j * m, z + (j + 1) * bs, z + j * bs);
@@ -391,7 +425,7 @@ static PetscErrorCode Allocate(BlockTri *t)
 #else
   t->nthreads = 1;
 #endif
-  t->nwork = maxrows * (2 * m + (size_t)t->bs) + m;
+  t->nwork = maxrows * (2 * m + (size_t)t->bs);
   t->block = aligned_alloc(sizeof(Lanes), sizeof(Lanes) * (factors + (size_t)t->nthreads * t->nwork));
   PetscCheck(t->block, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %g MB",
              (double)(factors + (size_t)t->nthreads * t->nwork) * sizeof(Lanes) / 1e6);
