@@ -13,6 +13,8 @@ BEGIN, END = "<!-- options: made by docs/options.py -->", "<!-- options end -->"
 TITLES = [
     ("Scene: domain and fluid", "Domain and fluid"),
     ("Scene: walls", "Walls"),
+    ("Scene: regions", "Regions"),
+    ("Regions: the same", "Regions: `region_...` for all, `region_<name>_...` for one"),
     ("Scene: structures", "Structures"),
     ("Beams", "Beams: `beam_...` for all, `beam_<name>_...` for one"),
     ("Lumped beams", "Lumped beams: `beam_...` for all, `beam_<name>_...` for one"),

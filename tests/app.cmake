@@ -12,6 +12,7 @@ endfunction()
 
 frond_app_test(app_badinput unit)
 frond_app_test(app_mesh unit)
+frond_app_test(app_regions unit)
 frond_app_test(app_run unit)
 frond_app_test(app_help unit)
 frond_app_test(app_probes unit)

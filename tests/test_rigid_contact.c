@@ -364,6 +364,81 @@ static PetscErrorCode TestOddBodies(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscReal PlaneGap(const PetscReal x[3], void *ctx)
+{
+  return x[2] - ((const PetscReal *)ctx)[2];
+}
+
+/* Inside of a pipe of radius 1 about the z axis. */
+static PetscReal PipeGap(const PetscReal x[3], void *ctx)
+{
+  (void)ctx;
+  return 1. - PetscSqrtReal(x[0] * x[0] + x[1] * x[1]);
+}
+
+/*
+  A sphere that flies about in a pipe: the wall pushes radially, so that speed along the axis and angular momentum about it stay,
+  to the error of normals by differences (round-off over a step of 1e-5 a: 1e-10), and so does the energy, to second order of the
+  step.
+*/
+static PetscErrorCode TestPipe(void)
+{
+  Rigid r;
+  RigidBodySpec s;
+  ShortRange p;
+  PetscReal X[3], V[3], far = 0., L = 0., L0, E0, turned = 0., last[2];
+  int hits = 0, out = 0;
+
+  PetscFunctionBegin;
+  PetscCall(ShortRangeInit(&p));
+  p.roughness = 5e-3, p.modulus = 1e7;
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+  PetscCall(RigidSetShortRange(r, &p));
+  PetscCall(RigidBodySpecInit(&s));
+  s.size[0] = .2;
+  s.mass = 1.;
+  s.position[0] = .3;
+  s.velocity[0] = .2, s.velocity[1] = 1., s.velocity[2] = .1;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidAddWallGap(r, PipeGap, NULL));
+  PetscCall(RigidSetUp(r));
+  L0 = s.position[0] * s.velocity[1];
+  E0 = .2 * .2 + 1. + .1 * .1;
+  last[0] = s.position[0], last[1] = 0.;
+  for (int m = 1; m <= 200000; m++) {
+    PetscReal rad;
+    PetscCall(RigidAdvance(r, m * 1e-4));
+    PetscCall(RigidGetState(r, 0, X, NULL, V, NULL));
+    rad = hypot(X[0], X[1]);
+    far = PetscMax(far, rad);
+    if (rad > .795 && !out) hits++;
+    out = rad > .795;
+    turned += atan2(last[0] * X[1] - last[1] * X[0], last[0] * X[0] + last[1] * X[1]);
+    last[0] = X[0], last[1] = X[1];
+    L = X[0] * V[1] - X[1] * V[0];
+  }
+  printf("sphere in a pipe: %d hits, %.1f turns, gap at least %g m\n", hits, turned / (2. * PETSC_PI), .8 - far);
+  TEST(hits > 10, "hits: %d", hits);
+  TEST(far < .8, "overlaps the pipe by %g m", far - .8);
+  TEST_NEAR(V[2], .1, 1e-9, "speed along the axis");
+  TEST_NEAR(L, L0, 1e-6, "angular momentum about the axis");
+  TEST_REL(V[0] * V[0] + V[1] * V[1] + V[2] * V[2], E0, 1e-3, "energy"); /* 60 steps in a contact: (h w)^2/24 = 1e-4 a hit */
+  PetscCall(RigidAdvance(r, 20.1));
+  PetscCall(RigidDestroy(&r));
+
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
+  s.position[0] = .85;
+  PetscCall(RigidAddBody(r, &s, NULL));
+  PetscCall(RigidAddWallGap(r, PipeGap, NULL));
+  PetscCall(RigidSetUp(r));
+  PetscCall(PetscPushErrorHandler(TestCatch, NULL));
+  Refused(RigidCheckOverlap(r, .1), "sphere in the wall of a pipe", "body 0 (sphere) overlaps the wall", "by 0.05");
+  Refused(RigidAddWallGap(r, PipeGap, NULL), "two walls of any shape", "RigidAddWallGap()", "one already");
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(RigidDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A wall is a fixed box without edges: a sphere feels the same, a box rests on it; bodies joined to the ground feel nothing. */
 static PetscErrorCode TestWall(void)
 {
@@ -371,13 +446,13 @@ static PetscErrorCode TestWall(void)
   RigidBodySpec s;
   ShortRange p;
   RigidJointSpec j;
-  PetscReal A[2][3], X[3], V[3], w[3];
+  PetscReal A[3][3], X[3], V[3], w[3];
   const PetscReal x[3] = {3., 1., 0.}, n[3] = {0., 0., 2.}, g[3] = {0., 0., -10.}, zero[3] = {0., 0., 0.};
 
   PetscFunctionBegin;
   PetscCall(ShortRangeInit(&p));
   p.viscosity = .5, p.cutoff = .05, p.roughness = 2e-3, p.modulus = 1e5, p.restitution = .7;
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 3; k++) {
     PetscCall(RigidCreate(PETSC_COMM_SELF, &r));
     PetscCall(RigidSetShortRange(r, &p));
     PetscCall(RigidSetShortRangeSpacing(r, .1));
@@ -386,7 +461,9 @@ static PetscErrorCode TestWall(void)
     s.position[2] = .1015; /* both forces act */
     s.velocity[2] = -.1;
     PetscCall(RigidAddBody(r, &s, NULL));
-    if (k)
+    if (k == 2)
+      PetscCall(RigidAddWallGap(r, PlaneGap, (void *)x));
+    else if (k)
       PetscCall(RigidAddWall(r, x, n));
     else {
       s.shape = RIGID_BOX;
@@ -401,6 +478,7 @@ static PetscErrorCode TestWall(void)
     PetscCall(RigidDestroy(&r));
   }
   TEST_REL(A[1][2], A[0][2], 1e-6, "sphere at a wall and at a box"); /* the box's normal is by differences */
+  TEST_REL(A[2][2], A[1][2], 1e-6, "sphere at a wall given by its gap");
   TEST(A[0][2] > 1., "no force: %g", A[0][2]);
 
   PetscCall(DropBox(&p, g, &s, &r));
@@ -603,6 +681,7 @@ int main(int argc, char **argv)
   PetscCall(TestPlates());
   PetscCall(TestOddBodies());
   PetscCall(TestWall());
+  PetscCall(TestPipe());
   PetscCall(TestCrowd());
   PetscCall(TestBadInput());
   PetscCall(PetscFinalize());

@@ -92,6 +92,22 @@ typedef struct {
   PetscInt first;                                    /* its first attachment */
 } SceneLink;
 
+/* A region that the fluid fills. */
+typedef enum { REGION_BOX, REGION_SPHERE, REGION_CYLINDER, REGION_PIPE, REGION_SURFACE } SceneRegionShape;
+#define REGION_SETS 9
+typedef struct {
+  char name[APP_NAME_LEN], file[PETSC_MAX_PATH_LEN];       /* file: of a surface */
+  PetscInt shape;                                          /* SceneRegionShape */
+  PetscReal lo[3], hi[3];                                  /* m: of a box; once set up, of a box about it */
+  PetscReal start[3], end[3], radius, radius2, step, back; /* m: cylinder, pipe, sphere */
+  PetscReal position[3], scale;                            /* m: sphere, surface; m per unit of the file */
+  PetscBool wall, setlo, sethi;
+  RigidGeometry geometry;                   /* surface */
+  PetscReal axis[3], length, segment[8][4]; /* cylinder, pipe: unit vector, m, and (s, r) from to of its outline, m */
+  PetscInt nsegments;
+  PetscBool endless; /* cylinder, pipe: it goes once along a periodic axis */
+} SceneRegion;
+
 /* A regular grid of points; lo = hi along an axis makes a slice or a line. */
 typedef struct {
   char name[APP_NAME_LEN];
@@ -132,6 +148,8 @@ typedef struct {
   SceneJoint *joints;
   PetscInt nlinks;
   SceneLink *links;
+  PetscInt nregions;
+  SceneRegion *regions;
   PetscInt ngrids, nprobes;
   SceneGrid *grids;
   SceneProbe *probes;
@@ -250,6 +268,7 @@ typedef struct {
 } AppMesh;
 PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam);
 PetscErrorCode AppMeshDestroy(AppMesh *mesh);
+PetscErrorCode AppFindFile(const char scene[], char file[PETSC_MAX_PATH_LEN]);
 
 /* sceneload.c: permanent loads of beams; power: of the moments at their ends now, W. */
 PetscErrorCode AppBuildBeamLoads(App *app);
@@ -262,6 +281,14 @@ PetscErrorCode AppSceneFreeLinks(AppScene *scene);
 PetscErrorCode AppBuildLinks(App *app);
 PetscErrorCode AppSetUpBeams(App *app);
 PetscErrorCode AppBuildAttach(App *app);
+
+/* sceneregion.c, appregion.c: regions that the fluid fills, in place of the domain. */
+PetscErrorCode AppSceneReadRegions(AppScene *scene, const char file[]);
+PetscErrorCode AppSceneFreeRegions(AppScene *scene);
+PetscErrorCode AppRegionsSetUp(App *app);
+void AppRegionDistance(const App *app, const PetscReal x[3], PetscReal *region, PetscReal *wall, PetscInt *nearest);
+PetscReal AppRegionGap(const PetscReal x[3], void *app);
+PetscErrorCode AppRegionWalls(App *app, PetscInt *n, PetscReal **x, PetscReal **volume, PetscReal **depth, PetscInt **owner);
 
 /* appfluid.c */
 PetscErrorCode AppFluidFill(App *app);

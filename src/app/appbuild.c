@@ -17,6 +17,7 @@ static PetscErrorCode build_sph(App *app)
   PetscCall(SphSetDomain(app->sph, s->lo, s->hi));
   PetscCall(SphSetPeriodic(app->sph, s->periodic));
   PetscCall(AppBodyForce(app));
+  PetscCall(AppRegionsSetUp(app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,7 +82,7 @@ static PetscErrorCode build_bodies(App *app, PetscReal rho)
     RigidGeometry mesh = NULL;
     AppDoing(app, "body '%s'", s->bodies[b].name);
     if (spec->shape == RIGID_MESH)
-      PetscCall(RigidGeometryCreateSTL(PETSC_COMM_SELF, s->bodies[b].file, s->bodies[b].scale, &mesh));
+      PetscCall(RigidGeometryCreateFile(PETSC_COMM_SELF, s->bodies[b].file, s->bodies[b].scale, &mesh));
     spec->geometry = mesh;
     PetscCall(RigidAddBody(app->rigid, spec, NULL));
     if (s->bodies[b].owngravity) PetscCall(RigidSetBodyGravity(app->rigid, b, s->bodies[b].gravity));
@@ -178,6 +179,41 @@ static PetscErrorCode add_walls(App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The walls around regions, one surface each. */
+static PetscErrorCode add_region_walls(App *app)
+{
+  const AppScene *s = &app->scene;
+  const PetscReal rest[3] = {0, 0, 0};
+  PetscInt n, *owner;
+  PetscReal *x, *volume, *depth, *rx, *rvolume, *rdepth;
+  CoupleSurface surface;
+  char name[APP_NAME_LEN + 8];
+
+  PetscFunctionBegin;
+  if (!s->nregions) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AppRegionWalls(app, &n, &x, &volume, &depth, &owner));
+  PetscCall(PetscMalloc3(3 * (size_t)n, &rx, n, &rvolume, n, &rdepth));
+  for (PetscInt r = 0; r < s->nregions; r++) {
+    PetscInt m = 0;
+    for (PetscInt i = 0; i < n; i++) {
+      if (owner[i] != r) continue;
+      PetscCall(PetscArraycpy(rx + 3 * m, x + 3 * i, 3));
+      rvolume[m] = volume[i];
+      rdepth[m++] = depth[i];
+    }
+    if (!m) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "region_%s", s->regions[r].name));
+    PetscCall(AppWallCreate(name, m, rx, rvolume, rdepth, rest, &surface));
+    PetscCall(add_surface(app, SURFACE_WALL, name, surface));
+  }
+  PetscCall(PetscFree3(rx, rvolume, rdepth));
+  PetscCall(PetscFree(x));
+  PetscCall(PetscFree(volume));
+  PetscCall(PetscFree(depth));
+  PetscCall(PetscFree(owner));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* How many markers each surface has. */
 static PetscErrorCode count_surfaces(App *app)
 {
@@ -233,7 +269,7 @@ static PetscErrorCode build_couple(App *app)
   CoupleSurface surface;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1((size_t)(6 + s->nbeams + s->nbodies), &app->surfaces));
+  PetscCall(PetscCalloc1((size_t)(6 + s->nregions + s->nbeams + s->nbodies), &app->surfaces));
   if (!s->fluid) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CoupleCreate(PETSC_COMM_SELF, &app->couple));
   PetscCall(CoupleSetSph(app->couple, app->sph));
@@ -243,6 +279,7 @@ static PetscErrorCode build_couple(App *app)
   PetscCall(check_places(app));
   PetscCall(AppFluidFill(app));
   PetscCall(add_walls(app));
+  PetscCall(add_region_walls(app));
   PetscCall(SphGetSpacing(app->sph, &dp));
   PetscCall(SphGetSupport(app->sph, &support));
   for (PetscInt b = 0; b < s->nbeams; b++) {

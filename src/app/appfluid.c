@@ -23,6 +23,7 @@ typedef struct {
   Image *image;
   PetscInt nimages, aimages;
   PetscInt bins[3], *start, *list; /* images of bin b: list[start[b]] ... list[start[b + 1] - 1] */
+  PetscReal slack, at[3], far;     /* m: where a region ends; the last site asked for and its distance from the surface */
 } Carve;
 
 /*
@@ -98,13 +99,32 @@ static PetscInt bin_of(const Carve *c, PetscInt a, PetscReal x)
   return at < 0 ? 0 : at >= (PetscReal)c->bins[a] ? c->bins[a] - 1 : (PetscInt)at;
 }
 
-/* A lattice site is fluid when no structure, nor a periodic image of one, holds it. */
+/* Whether a site lies in the regions and in the fluid box; near the last site asked for that needs no new distance. */
+static PetscBool inside_regions(Carve *c, const PetscReal x[3])
+{
+  const AppScene *s = &c->app->scene;
+  PetscReal d2 = 0, wall;
+  PetscInt nearest;
+
+  for (PetscInt a = 0; a < c->app->dim; a++) {
+    if (x[a] < s->fluidlo[a] - c->slack || x[a] > s->fluidhi[a] + c->slack) return PETSC_FALSE;
+    d2 += PetscSqr(x[a] - c->at[a]);
+  }
+  if (PetscSqrtReal(d2) < PetscAbsReal(c->far) - 2 * c->slack) return (PetscBool)(c->far < 0);
+  AppRegionDistance(c->app, x, &c->far, &wall, &nearest);
+  for (int a = 0; a < 3; a++) c->at[a] = x[a];
+  return (PetscBool)(c->far <= c->slack);
+}
+
+/* A lattice site is fluid when it lies in the regions, if there are any, and no structure, nor a periodic image of one, holds it.
+ */
 static PetscBool keep_site(const PetscReal x[3], void *ctx)
 {
-  const Carve *c = ctx;
+  Carve *c = ctx;
   const AppScene *s = &c->app->scene;
   PetscInt b = 0;
 
+  if (s->nregions && !inside_regions(c, x)) return PETSC_FALSE;
   for (PetscInt a = c->app->dim - 1; a >= 0; a--) b = b * c->bins[a] + bin_of(c, a, x[a]);
   for (PetscInt k = c->start[b]; k < c->start[b + 1]; k++) {
     const Image *image = &c->image[c->list[k]];
@@ -224,6 +244,7 @@ static PetscErrorCode carve_create(const App *app, PetscReal dp, Carve *c)
   PetscFunctionBegin;
   PetscCall(PetscMemzero(c, sizeof(*c)));
   c->app = app;
+  c->slack = SPH_FILL_SLACK * dp;
   PetscCall(PetscMalloc2(s->nbodies, &c->X, s->nbodies, &c->R));
   for (PetscInt b = 0; b < s->nbodies; b++) {
     PetscReal q[4];
@@ -310,11 +331,24 @@ static PetscErrorCode check_lattice(const App *app, PetscReal dp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The box whose lattice the fluid takes: the fluid box; with regions, whose walls share it, a part of the domain's lattice. */
+static void lattice_box(const App *app, PetscReal dp, PetscReal lo[3], PetscReal hi[3])
+{
+  const AppScene *s = &app->scene;
+
+  for (int a = 0; a < 3; a++) {
+    const PetscReal first = PetscFloorReal((s->fluidlo[a] - s->lo[a]) / dp + SPH_FILL_SLACK),
+                    last = PetscCeilReal((s->fluidhi[a] - s->lo[a]) / dp - SPH_FILL_SLACK);
+    lo[a] = s->nregions ? s->lo[a] + first * dp : s->fluidlo[a];
+    hi[a] = s->nregions ? s->lo[a] + last * dp : s->fluidhi[a];
+  }
+}
+
 /* Give app->sph its fluid markers. */
 PetscErrorCode AppFluidFill(App *app)
 {
   AppScene *s = &app->scene;
-  PetscReal dp, rho, *x = NULL, *v = NULL, *p = NULL;
+  PetscReal dp, rho, lo[3], hi[3], *x = NULL, *v = NULL, *p = NULL;
   PetscInt n = 0;
   Carve c;
 
@@ -323,7 +357,8 @@ PetscErrorCode AppFluidFill(App *app)
   PetscCall(SphGetDensity(app->sph, &rho));
   PetscCall(check_size(app, dp));
   PetscCall(carve_create(app, dp, &c));
-  PetscCall(SphFillBox(app->dim, dp, s->fluidlo, s->fluidhi, keep_site, &c, &n, &x));
+  lattice_box(app, dp, lo, hi);
+  PetscCall(SphFillBox(app->dim, dp, lo, hi, keep_site, &c, &n, &x));
   PetscCall(carve_destroy(&c));
   PetscCheck(n > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "the domain has no fluid: no marker of spacing sph_dp = %g m fits into the fluid box outside the structures",

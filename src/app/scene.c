@@ -249,7 +249,7 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
        &owngravity},
       {OPT_VEC, "load", "Constant force in the centre of mass, N", body->load, NULL, NULL},
       {OPT_VEC, "torque", "Constant torque of fixed direction, N m", body->torque, NULL, NULL},
-      {OPT_STRING, "file", "mesh: STL file of the closed surface (needed for a mesh)", body->file, NULL, NULL},
+      {OPT_STRING, "file", "mesh: STL or OBJ file of the closed surface (needed for a mesh)", body->file, NULL, NULL},
       {OPT_REAL, "scale", "mesh: metres per unit of the file", &body->scale, NULL, NULL},
   };
 
@@ -335,8 +335,8 @@ static PetscErrorCode read_bodies(AppScene *s, const AppNames *names, PetscBool 
     mesh = (PetscBool)(body->spec.shape == RIGID_MESH);
     PetscCheck(set[1] && (set[0] || mesh), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "body '%s' needs %s%s", body->name, prefix,
                set[1] ? "size" : "position");
-    PetscCheck(!mesh || body->file[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "body '%s' needs %sfile: the STL file of its mesh",
-               body->name, prefix);
+    PetscCheck(!mesh || body->file[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+               "body '%s' needs %sfile: the STL or OBJ file of its mesh", body->name, prefix);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -382,6 +382,8 @@ static PetscErrorCode check_given(const AppScene *s, const SceneSet *set)
              (double)s->histevery);
   PetscCheck(s->progressevery >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "progress_every = %g s must be 0 (never) or more",
              (double)s->progressevery);
+  PetscCheck(s->fluid || !s->nregions, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "regions: '%s' is to be filled with fluid, but the scene has none", s->regions[0].name);
   PetscCheck(s->fluid || s->nbeams || s->nbodies || s->nlumped, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
              "nothing to simulate: fluid is false, and neither beams nor bodies are listed");
   if (s->fluid) {
@@ -415,6 +417,7 @@ PetscErrorCode AppSceneRead(AppScene *s, const char file[])
   for (PetscInt i = 0; i <= FIELD_GROUP; i++) s->field[i] = PETSC_TRUE;
   PetscCall(default_name(file, s->name));
   PetscCall(read_domain(s, &set));
+  PetscCall(AppSceneReadRegions(s, file));
   PetscCall(read_structures(s, file));
   PetscCall(read_run(s, &set));
   PetscCall(PetscOptionsHasHelp(NULL, &help));
@@ -483,6 +486,7 @@ PetscErrorCode AppSceneDestroy(AppScene *s)
   PetscCall(PetscFree(s->lumped));
   PetscCall(PetscFree(s->joints));
   PetscCall(AppSceneFreeLinks(s));
+  PetscCall(AppSceneFreeRegions(s));
   PetscCall(PetscFree(s->grids));
   PetscCall(PetscFree(s->probes));
   PetscFunctionReturn(PETSC_SUCCESS);

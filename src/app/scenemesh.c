@@ -274,7 +274,7 @@ static PetscErrorCode describe(const Chain *c, AncfBeamSpec *spec)
 }
 
 /* A file that is not in the working folder may lie beside the scene. */
-static PetscErrorCode find_file(const char scene[], char file[PETSC_MAX_PATH_LEN])
+PetscErrorCode AppFindFile(const char scene[], char file[PETSC_MAX_PATH_LEN])
 {
   const char *slash = scene ? strrchr(scene, '/') : NULL;
   char beside[PETSC_MAX_PATH_LEN];
@@ -295,7 +295,7 @@ PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam)
   Chain c = {beam->name, beam->mesh, beam->group[0] ? beam->group : beam->name, NULL, 0, 0, 0, NULL, NULL, NULL, NULL, NULL};
 
   PetscFunctionBegin;
-  PetscCall(find_file(mesh->scene, beam->mesh));
+  PetscCall(AppFindFile(mesh->scene, beam->mesh));
   if (!mesh->dm || strcmp(mesh->file, beam->mesh)) {
     PetscCall(AppMeshDestroy(mesh));
     PetscCall(load(beam->name, beam->mesh, &mesh->dm));

@@ -252,6 +252,7 @@ PetscErrorCode AppBuildShortRange(App *app)
 {
   PetscReal dp, period[3], x[6][3], n[6][3];
   const PetscInt walls = domain(app, period, x, n);
+  PetscBool any = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (!app->sph) PetscFunctionReturn(PETSC_SUCCESS);
@@ -259,6 +260,8 @@ PetscErrorCode AppBuildShortRange(App *app)
   PetscCall(RigidSetShortRangeSpacing(app->rigid, dp));
   PetscCall(RigidSetPeriod(app->rigid, period));
   for (PetscInt w = 0; w < walls; w++) PetscCall(RigidAddWall(app->rigid, x[w], n[w]));
+  for (PetscInt r = 0; r < app->scene.nregions; r++) any = (PetscBool)(any || app->scene.regions[r].wall);
+  if (any) PetscCall(RigidAddWallGap(app->rigid, AppRegionGap, app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -53,6 +53,20 @@ typedef struct {
 FROND_EXTERN PetscErrorCode RigidGeometryCreateSTL(MPI_Comm comm, const char filename[], PetscReal scale,
                                                    RigidGeometry *geometry);
 /*
+  The same from an OBJ file: lines "v x y z" and "f a b c ...", the numbers of vertices from 1, or from the last one back if
+  negative; what follows a number behind a '/' and all other lines are passed over. Facets of more than three corners must be
+  convex; they are cut into triangles from their first corner. comm: communicator of the errors. filename: path. scale: > 0;
+  coordinates times it are metres. geometry: the new geometry.
+*/
+FROND_EXTERN PetscErrorCode RigidGeometryCreateOBJ(MPI_Comm comm, const char filename[], PetscReal scale,
+                                                   RigidGeometry *geometry);
+/*
+  The same from an OBJ file when its name ends in .obj, else from an STL file. comm: communicator of the errors. filename: path.
+  scale: > 0; coordinates times it are metres. geometry: the new geometry.
+*/
+FROND_EXTERN PetscErrorCode RigidGeometryCreateFile(MPI_Comm comm, const char filename[], PetscReal scale,
+                                                    RigidGeometry *geometry);
+/*
   The same from arrays, copied. comm: communicator of the errors. nv: number of vertices. x: nv x 3, m. nf: number of facets.
   facets: nf x 3 vertex numbers, counter-clockwise from outside. geometry: the new geometry.
 */
@@ -72,6 +86,13 @@ FROND_EXTERN PetscErrorCode RigidGeometryCreateComposite(MPI_Comm comm, PetscInt
 */
 FROND_EXTERN PetscErrorCode RigidGeometryGetPlacement(RigidGeometry geometry, PetscReal *volume, PetscReal center[3],
                                                       PetscReal q[4]);
+/*
+  Signed distance of a point to the surface where the file or the parts have it, m, negative inside. geometry: mesh or composite.
+  x: 3, m.
+*/
+FROND_EXTERN PetscReal RigidGeometryGetDistance(RigidGeometry geometry, const PetscReal x[3]);
+/* A box about it in the same frame. geometry: mesh or composite. lo, hi: 3, m. */
+FROND_EXTERN PetscErrorCode RigidGeometryGetBounds(RigidGeometry geometry, PetscReal lo[3], PetscReal hi[3]);
 /* Give a reference back. geometry: becomes NULL. */
 FROND_EXTERN PetscErrorCode RigidGeometryDestroy(RigidGeometry *geometry);
 
@@ -305,6 +326,13 @@ FROND_EXTERN PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3
   point of its face, m. normal: 3, into the free side, of any length > 0.
 */
 FROND_EXTERN PetscErrorCode RigidAddWall(Rigid rigid, const PetscReal x[3], const PetscReal normal[3]);
+/* Gap between a place x (m) and walls, m, < 0 in them; ctx is the caller's. It is a distance: it changes by |x - y| at most. */
+typedef PetscReal (*RigidWallGap)(const PetscReal x[3], void *ctx);
+/*
+  Walls of any shape that do not move, one at most, besides those of RigidAddWall(): forces act as at a plane in the nearest
+  point. Its normal comes from central differences. gap: gap to the walls. ctx: its second argument.
+*/
+FROND_EXTERN PetscErrorCode RigidAddWallGap(Rigid rigid, RigidWallGap gap, void *ctx);
 /* What other solvers need for short-range forces on a body. body: number. radius: of a sphere about its centre that holds it, m.
  */
 FROND_EXTERN PetscErrorCode RigidGetRadius(Rigid rigid, PetscInt body, PetscReal *radius);

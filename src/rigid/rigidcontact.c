@@ -253,26 +253,47 @@ static PetscErrorCode AnyAny(Rigid rigid, RigidContact c, PetscInt i, PetscInt j
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Body i and a wall: the sphere, or every surface marker, against a plane. */
+/* Gap between x and a wall, m; n, if not NULL: unit normal into the free side, 0 where there is none. */
+static PetscReal WallGap(const RigidWall *w, PetscReal step, const PetscReal x[3], PetscReal n[3])
+{
+  const PetscReal d[3] = {x[0] - w->x[0], x[1] - w->x[1], x[2] - w->x[2]};
+  PetscReal norm;
+
+  for (int k = 0; k < 3 && n; k++) n[k] = w->n[k];
+  if (!w->gap) return Vec3Dot(w->n, d);
+  for (int k = 0; k < 3 && n; k++) {
+    PetscReal a[3] = {x[0], x[1], x[2]}, b[3] = {x[0], x[1], x[2]};
+    a[k] += step;
+    b[k] -= step;
+    n[k] = w->gap(a, w->ctx) - w->gap(b, w->ctx);
+  }
+  norm = n ? Vec3Norm(n) : 0.;
+  for (int k = 0; k < 3 && norm > 0.; k++) n[k] /= norm;
+  return w->gap(x, w->ctx);
+}
+
+/* Body i and a wall: the sphere, or every surface marker, against a plane in the nearest point. */
 static PetscErrorCode AnyWall(Rigid rigid, RigidContact c, PetscInt i, const RigidWall *w)
 {
   const RigidBody *b = &rigid->body[i];
   const PetscBool round = IsRound(&b->spec, rigid->dim);
   const PetscReal a = round ? c->radius[i] : 0.;
   const Pair ground = {RIGID_GROUND, i};
-  const PetscReal d[3] = {b->X[0] - w->x[0], b->X[1] - w->x[1], b->X[2] - w->x[2]};
+  const PetscReal step = 1.e-5 * c->radius[i];
 
   PetscFunctionBegin;
-  if (b->spec.motion != RIGID_FREE || Vec3Dot(w->n, d) > c->radius[i] + c->reach) PetscFunctionReturn(PETSC_SUCCESS);
+  if (b->spec.motion != RIGID_FREE || WallGap(w, step, b->X, NULL) > c->radius[i] + c->reach) PetscFunctionReturn(PETSC_SUCCESS);
   if (c->njoined && bsearch(&ground, c->joined, (size_t)c->njoined, sizeof(Pair), RigidComparePairs))
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < (round ? 1 : c->surface[i].n); k++) {
-    PetscReal o[3] = {0., 0., 0.}, x[3], s;
+    PetscReal o[3] = {0., 0., 0.}, x[3], n[3], s;
     if (!round) QuatRotate(b->q, &c->surface[i].x[3 * k], o);
-    s = Vec3Dot(w->n, d) + Vec3Dot(w->n, o) - a;
+    for (int m = 0; m < 3; m++) x[m] = b->X[m] + o[m];
+    s = WallGap(w, step, x, NULL) - a;
     if (s >= c->reach) continue;
-    for (int m = 0; m < 3; m++) x[m] = b->X[m] + o[m] - (a + .5 * s) * w->n[m];
-    PetscCall(AddContact(rigid, c, i, RIGID_WALL, x, w->n, x, s,
+    (void)WallGap(w, step, x, n);
+    for (int m = 0; m < 3; m++) x[m] -= (a + .5 * s) * n[m];
+    PetscCall(AddContact(rigid, c, i, RIGID_WALL, x, n, x, s,
                          ShortRangeSphere(&rigid->shortrange, round ? a : rigid->spacing, PETSC_INFINITY, s),
                          round ? a : .5 * rigid->spacing, 1.));
   }
@@ -450,8 +471,8 @@ PetscErrorCode RigidCheckOverlap(Rigid rigid, PetscReal spacing)
       for (PetscInt m = 0; m < c->n; m++) depth = PetscMax(depth, -c->contact[m].s);
       PetscCheck(depth <= 1.e-9 * c->radius[i], rigid->comm, PETSC_ERR_ARG_INCOMP,
                  "Rigid body %" PetscInt_FMT " (%s) overlaps the wall of normal (%g, %g, %g) by %g m", i,
-                 RigidShapeName(rigid->body[i].spec.shape), (double)rigid->wall[k].n[0], (double)rigid->wall[k].n[1],
-                 (double)rigid->wall[k].n[2], (double)depth);
+                 RigidShapeName(rigid->body[i].spec.shape), (double)c->contact[0].n[0], (double)c->contact[0].n[1],
+                 (double)c->contact[0].n[2], (double)depth);
     }
   PetscCall(RigidContactDestroy(&c));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -486,12 +507,24 @@ PetscErrorCode RigidSetPeriod(Rigid rigid, const PetscReal period[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode RigidAddWallGap(Rigid rigid, RigidWallGap gap, void *ctx)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < rigid->nwalls; k++)
+    PetscCheck(!rigid->wall[k].gap, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE, "RigidAddWallGap(): there is one already");
+  rigid->wall[rigid->nwalls].gap = gap;
+  rigid->wall[rigid->nwalls++].ctx = ctx;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode RigidAddWall(Rigid rigid, const PetscReal x[3], const PetscReal normal[3])
 {
   const PetscReal norm = Vec3Norm(normal);
+  PetscInt planes = 0;
 
   PetscFunctionBegin;
-  PetscCheck(rigid->nwalls < 6, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE, "RigidAddWall(): there are 6 walls already");
+  for (PetscInt k = 0; k < rigid->nwalls; k++) planes += !rigid->wall[k].gap;
+  PetscCheck(planes < 6, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE, "RigidAddWall(): there are 6 walls already");
   PetscCheck(norm > 0. && !PetscIsInfOrNanReal(norm + x[0] + x[1] + x[2]), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "RigidAddWall(): the normal (%g, %g, %g) must be finite and longer than 0", (double)normal[0], (double)normal[1],
              (double)normal[2]);

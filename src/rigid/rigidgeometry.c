@@ -74,6 +74,40 @@ PetscReal RigidGeometryDistance(RigidGeometry g, const PetscReal x[3])
   return best;
 }
 
+PetscReal RigidGeometryGetDistance(RigidGeometry geometry, const PetscReal x[3])
+{
+  const PetscReal d[3] = {x[0] - geometry->center[0], x[1] - geometry->center[1], x[2] - geometry->center[2]};
+  PetscReal y[3];
+
+  QuatRotateBack(geometry->q, d, y);
+  return RigidGeometryDistance(geometry, y);
+}
+
+PetscErrorCode RigidGeometryGetBounds(RigidGeometry geometry, PetscReal lo[3], PetscReal hi[3])
+{
+  PetscReal R[9];
+
+  PetscFunctionBegin;
+  QuatMatrix(geometry->q, R);
+  for (int k = 0; k < 3; k++) {
+    lo[k] = hi[k] = geometry->center[k];
+    for (int c = 0; c < 3 && geometry->shape != RIGID_MESH; c++) { /* the turned box about that of the parts */
+      lo[k] += PetscMin(R[3 * k + c] * geometry->lo[c], R[3 * k + c] * geometry->hi[c]);
+      hi[k] += PetscMax(R[3 * k + c] * geometry->lo[c], R[3 * k + c] * geometry->hi[c]);
+    }
+  }
+  for (PetscInt i = 0; i < geometry->mesh.nv; i++) {
+    PetscReal x[3];
+    QuatRotate(geometry->q, &geometry->mesh.x[3 * i], x);
+    for (int k = 0; k < 3; k++) {
+      x[k] += geometry->center[k];
+      lo[k] = i ? PetscMin(lo[k], x[k]) : x[k];
+      hi[k] = i ? PetscMax(hi[k], x[k]) : x[k];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Half extents of a part's own bounding box; 0 along z in 2D. */
 static void PartExtent(const RigidBodySpec *p, PetscInt dim, PetscReal h[3])
 {

@@ -41,6 +41,10 @@ struct _p_RigidGeometry {
 extern PetscErrorCode RigidGeometryCreate_Private(MPI_Comm comm, RigidShape shape, PetscInt dim, RigidGeometry *g);
 extern PetscErrorCode RigidGeometryReference(RigidGeometry g);
 extern PetscReal RigidGeometryDistance(RigidGeometry g, const PetscReal x[3]);
+extern PetscErrorCode RigidMeshReadFile(MPI_Comm comm, const char kind[], const char filename[], size_t *size, char **data);
+extern PetscErrorCode RigidMeshScale(MPI_Comm comm, const char kind[], const char filename[], PetscReal scale, PetscInt nf,
+                                     PetscReal corners[]);
+extern PetscErrorCode RigidMeshReadOBJ(MPI_Comm comm, const char filename[], PetscReal scale, PetscInt *nf, PetscReal **corners);
 extern PetscErrorCode RigidMeshReadSTL(MPI_Comm comm, const char filename[], PetscReal scale, PetscInt *nf, PetscReal **corners);
 extern PetscErrorCode RigidMeshTopology(MPI_Comm comm, const char name[], RigidMesh *m);
 extern PetscErrorCode RigidMeshTree(RigidMesh *m);

@@ -48,9 +48,11 @@ typedef struct {
 typedef struct _p_RigidContact *RigidContact; /* rigidcontact.c */
 typedef struct _p_RigidSystem *RigidSystem;   /* rigidconstraint.c */
 
-/* Half space that bodies keep out of: a point of its face, m, and the unit normal out of it. */
+/* What bodies keep out of: behind a plane, given by a point of its face, m, and the unit normal out of it, or where gap < 0. */
 typedef struct {
   PetscReal x[3], n[3];
+  RigidWallGap gap; /* NULL: a plane */
+  void *ctx;
 } RigidWall;
 
 struct _p_Rigid {
@@ -69,7 +71,7 @@ struct _p_Rigid {
   ShortRange shortrange;
   PetscReal spacing, period[3];
   PetscInt nwalls;
-  RigidWall wall[6];
+  RigidWall wall[7];    /* 6 planes, and one of any shape */
   RigidContact contact; /* NULL without short-range forces */
   PetscBool setup, advanced;
 };

@@ -6,6 +6,7 @@
 */
 #include "rigidgeometry.h"
 #include <stdlib.h>
+#include <strings.h>
 
 typedef struct {
   PetscInt lo, hi, facet, side; /* vertices in order, side: corner k where the edge k -> k + 1 starts; negative sense: -1 - k */
@@ -250,6 +251,18 @@ static PetscErrorCode MeshFinish(RigidGeometry g, const char name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A mesh of nf facets with these corners, which are freed. */
+static PetscErrorCode MeshFromCorners(MPI_Comm comm, const char filename[], PetscInt nf, PetscReal *corners,
+                                      RigidGeometry *geometry)
+{
+  PetscFunctionBegin;
+  PetscCall(RigidGeometryCreate_Private(comm, RIGID_MESH, 3, geometry));
+  PetscCall(Weld(nf, corners, &(*geometry)->mesh));
+  PetscCall(PetscFree(corners));
+  PetscCall(MeshFinish(*geometry, filename));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode RigidGeometryCreateSTL(MPI_Comm comm, const char filename[], PetscReal scale, RigidGeometry *geometry)
 {
   PetscReal *corners;
@@ -257,10 +270,30 @@ PetscErrorCode RigidGeometryCreateSTL(MPI_Comm comm, const char filename[], Pets
 
   PetscFunctionBegin;
   PetscCall(RigidMeshReadSTL(comm, filename, scale, &nf, &corners));
-  PetscCall(RigidGeometryCreate_Private(comm, RIGID_MESH, 3, geometry));
-  PetscCall(Weld(nf, corners, &(*geometry)->mesh));
-  PetscCall(PetscFree(corners));
-  PetscCall(MeshFinish(*geometry, filename));
+  PetscCall(MeshFromCorners(comm, filename, nf, corners, geometry));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGeometryCreateOBJ(MPI_Comm comm, const char filename[], PetscReal scale, RigidGeometry *geometry)
+{
+  PetscReal *corners;
+  PetscInt nf;
+
+  PetscFunctionBegin;
+  PetscCall(RigidMeshReadOBJ(comm, filename, scale, &nf, &corners));
+  PetscCall(MeshFromCorners(comm, filename, nf, corners, geometry));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGeometryCreateFile(MPI_Comm comm, const char filename[], PetscReal scale, RigidGeometry *geometry)
+{
+  const char *dot = strrchr(filename, '.');
+
+  PetscFunctionBegin;
+  if (dot && !strcasecmp(dot, ".obj"))
+    PetscCall(RigidGeometryCreateOBJ(comm, filename, scale, geometry));
+  else
+    PetscCall(RigidGeometryCreateSTL(comm, filename, scale, geometry));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

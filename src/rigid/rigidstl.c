@@ -22,23 +22,37 @@ static PetscReal Float(const unsigned char *p)
   return (PetscReal)f;
 }
 
-static PetscErrorCode ReadWhole(MPI_Comm comm, const char filename[], size_t *size, char **data)
+/* The file as it is and a 0 behind it; kind: STL or OBJ, for messages. */
+PetscErrorCode RigidMeshReadFile(MPI_Comm comm, const char kind[], const char filename[], size_t *size, char **data)
 {
   FILE *fp = fopen(filename, "rb");
   long n = 0;
 
   PetscFunctionBegin;
-  PetscCheck(fp, comm, PETSC_ERR_FILE_OPEN, "STL file %s: cannot be opened", filename);
+  PetscCheck(fp, comm, PETSC_ERR_FILE_OPEN, "%s file %s: cannot be opened", kind, filename);
   if (fseek(fp, 0, SEEK_END) == 0) n = ftell(fp);
   if (n <= 0 || fseek(fp, 0, SEEK_SET) != 0) {
     fclose(fp);
-    SETERRQ(comm, PETSC_ERR_FILE_READ, "STL file %s: is empty or cannot be read", filename);
+    SETERRQ(comm, PETSC_ERR_FILE_READ, "%s file %s: is empty or cannot be read", kind, filename);
   }
   PetscCall(PetscMalloc1((size_t)n + 1, data));
   *size = fread(*data, 1, (size_t)n, fp);
   fclose(fp);
   (*data)[*size] = 0;
-  PetscCheck(*size == (size_t)n, comm, PETSC_ERR_FILE_READ, "STL file %s: cannot be read to its end", filename);
+  PetscCheck(*size == (size_t)n, comm, PETSC_ERR_FILE_READ, "%s file %s: cannot be read to its end", kind, filename);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coordinates to metres, in place. */
+PetscErrorCode RigidMeshScale(MPI_Comm comm, const char kind[], const char filename[], PetscReal scale, PetscInt nf,
+                              PetscReal corners[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 9 * nf; i++) {
+    corners[i] *= scale;
+    PetscCheck(!PetscIsInfOrNanReal(corners[i]), comm, PETSC_ERR_FILE_UNEXPECTED,
+               "%s file %s: facet %" PetscInt_FMT " has a coordinate that is not finite", kind, filename, i / 9);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,17 +113,13 @@ PetscErrorCode RigidMeshReadSTL(MPI_Comm comm, const char filename[], PetscReal 
   PetscCheck(scale > 0. && !PetscIsInfOrNanReal(scale), comm, PETSC_ERR_ARG_OUTOFRANGE, "STL file %s: scale = %g; must be > 0",
              filename, (double)scale);
   *corners = NULL;
-  PetscCall(ReadWhole(comm, filename, &size, &data));
+  PetscCall(RigidMeshReadFile(comm, "STL", filename, &size, &data));
   binary = (PetscBool)(size >= 84 && (84 + 50 * (size_t)Word((unsigned char *)data + 80) == size || strncmp(data, "solid", 5)));
   if (binary)
     PetscCall(ReadBinary(comm, filename, size, data, nf, corners));
   else
     PetscCall(ReadText(comm, filename, data, nf, corners));
   PetscCall(PetscFree(data));
-  for (PetscInt i = 0; i < 9 * *nf; i++) {
-    (*corners)[i] *= scale;
-    PetscCheck(!PetscIsInfOrNanReal((*corners)[i]), comm, PETSC_ERR_FILE_UNEXPECTED,
-               "STL file %s: facet %" PetscInt_FMT " has a coordinate that is not finite", filename, i / 9);
-  }
+  PetscCall(RigidMeshScale(comm, "STL", filename, scale, *nf, *corners));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -95,3 +95,64 @@ PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], c
   *dout = d;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Wall markers so far. */
+typedef struct {
+  PetscInt n, alloc;
+  PetscReal *x, *volume, *depth;
+} Walls;
+
+static PetscErrorCode AddWall(Walls *w, const PetscReal x[3], PetscReal volume, PetscReal depth)
+{
+  PetscFunctionBegin;
+  if (w->n == w->alloc) {
+    w->alloc = 2 * w->alloc + 1024;
+    PetscCall(PetscRealloc(3 * (size_t)w->alloc * sizeof(PetscReal), &w->x));
+    PetscCall(PetscRealloc((size_t)w->alloc * sizeof(PetscReal), &w->volume));
+    PetscCall(PetscRealloc((size_t)w->alloc * sizeof(PetscReal), &w->depth));
+  }
+  for (int k = 0; k < 3; k++) w->x[3 * w->n + k] = x[k];
+  w->volume[w->n] = volume;
+  w->depth[w->n++] = depth;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphFillRegionWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], const PetscReal hi[3],
+                                  const PetscBool face[6], const PetscBool periodic[3], PetscReal depthmax,
+                                  SphFillDistance distance, void *ctx, PetscInt *count, PetscReal **xout, PetscReal **vout,
+                                  PetscReal **dout)
+{
+  const PetscInt layers = (PetscInt)ceil(depthmax / dp);
+  const PetscReal vol = dim == 2 ? dp * dp : dp * dp * dp, reach = depthmax * (1.0 + 1e-9), slack = SPH_FILL_SLACK * dp;
+  PetscInt n[3], a[3], b[3];
+  Walls w = {0, 0, NULL, NULL, NULL};
+
+  PetscFunctionBegin;
+  PetscCall(SitesPerAxis(dim, dp, lo, hi, n));
+  for (int k = 0; k < 3; k++) {
+    const PetscBool lay = k < dim && !periodic[k] ? PETSC_TRUE : PETSC_FALSE;
+    a[k] = lay && !face[2 * k] ? -layers : 0;
+    b[k] = n[k] + (lay && !face[2 * k + 1] ? layers : 0);
+  }
+  for (PetscInt k = a[2]; k < b[2]; k++)
+    for (PetscInt j = a[1]; j < b[1]; j++)
+      for (PetscInt i = a[0], skip; i < b[0]; i += skip + 1) {
+        const PetscReal x[3] = {lo[0] + ((PetscReal)i + 0.5) * dp, lo[1] + ((PetscReal)j + 0.5) * dp,
+                                dim == 3 ? lo[2] + ((PetscReal)k + 0.5) * dp : 0.0};
+        PetscReal region, wall, far;
+        distance(x, ctx, &region, &wall);
+        if (region > slack && wall <= reach) PetscCall(AddWall(&w, x, vol, wall));
+        far = PetscMax(-region, wall - reach); /* sites of this row that are nearer than this cannot be walls either */
+        skip = far > dp ? (PetscInt)PetscMin(floor((1.0 - 1e-9) * far / dp), (PetscReal)(b[0] - i)) : 0;
+      }
+  if (!w.n) { /* the caller frees them in any case */
+    PetscCall(PetscMalloc1(3, &w.x));
+    PetscCall(PetscMalloc1(1, &w.volume));
+    PetscCall(PetscMalloc1(1, &w.depth));
+  }
+  *count = w.n;
+  *xout = w.x;
+  *vout = w.volume;
+  *dout = w.depth;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

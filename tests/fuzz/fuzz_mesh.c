@@ -1,4 +1,4 @@
-/* fuzz_mesh.c - an STL file, text or binary: read, welded, checked; a mesh that is taken has a volume. */
+/* fuzz_mesh.c - an STL file, text or binary, or an OBJ file: read, welded, checked; a mesh that is taken has a volume. */
 #define FUZZ_STREAM
 #include "fuzz.h"
 
@@ -8,7 +8,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   PetscReal volume, center[3], q[4];
 
   fuzz_write(data, size);
-  if (!RigidGeometryCreateSTL(PETSC_COMM_SELF, fuzz_file, 1., &mesh)) {
+  if (!(size > 1 && (data[0] == 'v' || data[0] == 'f' || data[0] == '#') ? RigidGeometryCreateOBJ : RigidGeometryCreateSTL)(
+          PETSC_COMM_SELF, fuzz_file, 1., &mesh)) {
     if (RigidGeometryGetPlacement(mesh, &volume, center, q)) abort();
     if (!(volume > 0)) abort();
     RigidGeometryDestroy(&mesh);
