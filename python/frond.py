@@ -114,7 +114,7 @@ class _BeamSpec(ctypes.Structure):
     _fields_ = [
         ("start", Real * 3), ("end", Real * 3), ("elements", Int), ("diameter", Real), ("density", Real), ("young", Real),
         ("axialdamping", Real), ("bendingdamping", Real), ("EA", Real), ("EI", Real), ("rhoA", Real), ("inner", Real), ("width", Real), ("thickness", Real), ("pretension", Real),
-        ("curvature", Real), ("normal", Real * 3), ("velocity", Real * 3), ("end0", ctypes.c_int), ("end1", ctypes.c_int),
+        ("curvature", Real), ("normal", Real * 3), ("curve", ctypes.POINTER(Real)), ("curvelength", Real), ("velocity", Real * 3), ("end0", ctypes.c_int), ("end1", ctypes.c_int),
     ]
 
 

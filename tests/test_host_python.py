@@ -30,7 +30,7 @@ def layout(header, name):
         text = re.sub(r"/\*.*?\*/", "", f.read(), flags=re.S)
     inner = re.search(r"typedef struct \{([^{}]*)\} %s;" % name, text).group(1)
     for declaration in inner.split(";")[:-1]:
-        for member in declaration.split(None, 1)[1].split(","):
+        for member in declaration.strip().removeprefix("const ").split(None, 1)[1].split(","):
             word, size = re.fullmatch(r"\s*\**(\w+)(?:\[(\d+)\])?\s*", member).groups()
             yield word, int(size or 1)
 

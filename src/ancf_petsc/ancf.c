@@ -137,6 +137,13 @@ PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number
     ancf->maxbeams = PetscMax(16, 2 * ancf->maxbeams);
     PetscCall(PetscRealloc(sizeof(AncfBeam) * (size_t)ancf->maxbeams, &ancf->beams));
   }
+  if (spec->curve) {
+    PetscReal *copy;
+
+    PetscCall(PetscMalloc1(6 * (spec->elements + 1), &copy));
+    PetscCall(PetscArraycpy(copy, spec->curve, 6 * (spec->elements + 1)));
+    beam.spec.curve = copy;
+  }
   ancf->beams[ancf->nbeams] = beam;
   if (number) *number = ancf->nbeams;
   ancf->nbeams++;
@@ -438,6 +445,10 @@ PetscErrorCode AncfView(Ancf ancf, PetscViewer viewer)
       PetscCall(PetscViewerASCIIPrintf(viewer, "        pretension %g N, curvature %g 1/m about (%g, %g, %g)\n",
                                        (double)m->spec.pretension, (double)m->spec.curvature, (double)m->spec.normal[0],
                                        (double)m->spec.normal[1], (double)m->spec.normal[2]));
+    if (m->spec.curve)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "        curve of length %g m in the plane across (%g, %g, %g)\n",
+                                       (double)m->spec.curvelength, (double)m->spec.normal[0], (double)m->spec.normal[1],
+                                       (double)m->spec.normal[2]));
   }
   if (ancf->njoints) PetscCall(PetscViewerASCIIPrintf(viewer, "joints %" PetscInt_FMT "\n", ancf->njoints));
   PetscCall(PetscViewerASCIIPrintf(viewer, "constraints: %s\n", AncfConstraintTypes[ancf->constraints]));
@@ -478,6 +489,11 @@ PetscErrorCode AncfDestroy(Ancf *ancf)
   PetscCall(PetscFree(a->saved));
   PetscCall(PetscFree(a->batches));
   PetscCall(PetscFree(a->lanebeams));
+  for (PetscInt b = 0; b < a->nbeams; b++) {
+    void *curve = (void *)a->beams[b].spec.curve;
+
+    PetscCall(PetscFree(curve));
+  }
   PetscCall(PetscFree(a->beams));
   PetscCall(PetscFree(a->prefix));
   PetscCall(PetscFree(*ancf));

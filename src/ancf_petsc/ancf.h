@@ -41,8 +41,12 @@ typedef struct {
   PetscReal curvature, normal[3]; /* the axis is an arc from start to end, free of bending: 1/m, turning about the normal; a
                                              normal, not zero, declares that the beam moves in the plane across it, and refuses
                                      other motion. A rectangle that is no square needs it: the element carries one EI */
-  PetscReal velocity[3];          /* initial velocity, m/s */
-  AncfEnd end0, end1;             /* boundary conditions at start and end */
+  const PetscReal *curve; /* or any curve in the plane across the normal, free of stress: (elements + 1) x 6, r (m) and its
+                             gradient by the length, nodes evenly spaced along it; copied; NULL: none. start and end are
+                             its ends, curvature is 0 */
+  PetscReal curvelength;  /* its length, m */
+  PetscReal velocity[3];  /* initial velocity, m/s */
+  AncfEnd end0, end1;     /* boundary conditions at start and end */
 } AncfBeamSpec;
 
 /* An empty set of beams. comm: communicator of one rank: beams are not shared out among processes. ancf: the new set. */
@@ -58,7 +62,7 @@ FROND_EXTERN PetscErrorCode AncfBeamSpecInit(AncfBeamSpec *spec);
 FROND_EXTERN PetscErrorCode AncfBeamSpecSetAnnulus(AncfBeamSpec *spec, PetscReal inner);
 /*
   Where a beam lies at first. spec: the beam. s: fraction of the length, in [0, 1]. e: 6, position, m, and its gradient, of the
-  line or arc.
+  line, arc or curve.
 */
 FROND_EXTERN PetscErrorCode AncfBeamSpecGetPoint(const AncfBeamSpec *spec, PetscReal s, PetscReal e[6]);
 /* Append a beam, before AncfSetUp(). spec: copied. beam: its number, or NULL. */

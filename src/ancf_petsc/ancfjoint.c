@@ -2,7 +2,7 @@
 #include "ancfimpl.h"
 
 /* Angles between tangents that are neither none nor a corner's cannot be told from an inexact mesh. */
-#define COLLINEAR 1e-8
+#define COLLINEAR 5e-7 /* a mesh file may hold eight digits */
 #define CORNER 1e-3
 
 PetscErrorCode AncfAddJoint(Ancf ancf, AncfJointType type, PetscInt n, const PetscInt beam[], const PetscInt node[],

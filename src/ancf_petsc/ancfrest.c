@@ -178,9 +178,27 @@ PetscReal AncfSpecLength(const AncfBeamSpec *s)
 {
   PetscReal chord = 0;
 
+  if (s->curve) return s->curvelength;
   for (int c = 0; c < 3; c++) chord += PetscSqr(s->end[c] - s->start[c]);
   chord = PetscSqrtReal(chord);
   return s->curvature == 0 ? chord : 2 * PetscAsinReal(s->curvature * chord / 2) / s->curvature;
+}
+
+/* The cubic between the nodes of a given curve. */
+static void CurvePoint(const AncfBeamSpec *s, PetscReal xi, PetscReal e[6])
+{
+  const PetscReal at = xi * (PetscReal)s->elements, l = s->curvelength / (PetscReal)s->elements;
+  const PetscInt k = PetscMin((PetscInt)at, s->elements - 1);
+  PetscReal S[4], Sx[4];
+
+  AncfShape(at - (PetscReal)k, l, S);
+  AncfShapeX(at - (PetscReal)k, l, Sx);
+  for (int c = 0; c < 6; c++) e[c] = 0;
+  for (int i = 0; i < 4; i++)
+    for (int c = 0; c < 3; c++) {
+      e[c] += S[i] * s->curve[6 * k + 3 * i + c];
+      e[3 + c] += Sx[i] * s->curve[6 * k + 3 * i + c];
+    }
 }
 
 /* Coordinates at the fraction xi of the length: a line, or an arc that turns about the normal by its curvature. */
@@ -189,6 +207,10 @@ void AncfSpecPoint(const AncfBeamSpec *s, PetscReal xi, PetscReal e[6])
   const PetscReal L = AncfSpecLength(s), k = s->curvature, turn = k * L;
   PetscReal t[3], n[3], side[3], chord = 0, size = 0, along, across, angle = turn * (xi - 0.5);
 
+  if (s->curve) {
+    CurvePoint(s, xi, e);
+    return;
+  }
   for (int c = 0; c < 3; c++) {
     chord += PetscSqr(s->end[c] - s->start[c]);
     size += PetscSqr(s->normal[c]);
@@ -218,6 +240,40 @@ PetscErrorCode AncfBeamSpecGetPoint(const AncfBeamSpec *spec, PetscReal s, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A given curve: finite, from start to end, in the plane across the normal, with gradients of one and nodes evenly spaced. */
+static PetscErrorCode CheckCurve(Ancf ancf, const AncfBeamSpec *s)
+{
+  const PetscReal *n = s->normal, L = s->curvelength, size = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+
+  PetscFunctionBegin;
+  PetscCheck(L > 0 && !PetscIsInfOrNanReal(L), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": curvelength = %g m must be positive and finite", ancf->nbeams, (double)L);
+  PetscCheck(s->curvature == 0 && size > 0 && !PetscIsInfOrNanReal(size), ancf->comm, PETSC_ERR_ARG_INCOMP,
+             "Beam %" PetscInt_FMT ": a curve needs a normal, the axis of its plane, and curvature 0; it is %g 1/m", ancf->nbeams,
+             (double)s->curvature);
+  for (PetscInt k = 0; k <= s->elements; k++) {
+    const PetscReal *e = s->curve + 6 * k, *ref = k ? e - 6 : s->start;
+    PetscReal off = 0, out = 0, stretch = 0, gap = 0;
+
+    for (int c = 0; c < 3; c++) {
+      off += (e[c] - s->start[c]) * n[c] / size;
+      out += e[3 + c] * n[c] / size;
+      stretch += PetscSqr(e[3 + c]);
+      gap += PetscSqr(e[c] - ref[c]);
+    }
+    gap = PetscSqrtReal(gap) * (PetscReal)s->elements / L;
+    PetscCheck(PetscAbsReal(off) <= 1e-5 * L && PetscAbsReal(out) <= 1e-5 && PetscAbsReal(stretch - 1) <= 1e-3 &&
+                   (k ? gap > 0.1 && gap < 1.01 : gap < 1e-8),
+               ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "Beam %" PetscInt_FMT ": node %" PetscInt_FMT
+               " of its curve, (%g, %g, %g) m with gradient (%g, %g, %g), must be finite, in the plane across the normal through "
+               "start, with a gradient of length 1, and about %g m along the curve from the node before",
+               ancf->nbeams, k, (double)e[0], (double)e[1], (double)e[2], (double)e[3], (double)e[4], (double)e[5],
+               (double)(L / (PetscReal)s->elements));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfCheckRest(Ancf ancf, const AncfBeamSpec *s)
 {
   PetscReal chord = 0, size = 0, dot = 0;
@@ -227,6 +283,10 @@ PetscErrorCode AncfCheckRest(Ancf ancf, const AncfBeamSpec *s)
              "Beam %" PetscInt_FMT ": pretension = %g N must be finite", ancf->nbeams, (double)s->pretension);
   PetscCheck(!PetscIsInfOrNanReal(s->curvature), ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "Beam %" PetscInt_FMT ": curvature = %g 1/m must be finite", ancf->nbeams, (double)s->curvature);
+  if (s->curve) {
+    PetscCall(CheckCurve(ancf, s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (int c = 0; c < 3; c++) {
     chord += PetscSqr(s->end[c] - s->start[c]);
     size += PetscSqr(s->normal[c]);
@@ -282,7 +342,7 @@ PetscErrorCode AncfSetUpRest(Ancf ancf)
   for (PetscInt b = 0; b < ancf->nbeams; b++) {
     const AncfBeamSpec *s = &ancf->beams[b].spec;
 
-    if (s->pretension != 0 || s->curvature != 0) natural = PETSC_TRUE;
+    if (s->pretension != 0 || s->curvature != 0 || s->curve) natural = PETSC_TRUE;
     if (s->normal[0] != 0 || s->normal[1] != 0 || s->normal[2] != 0) planar = PETSC_TRUE;
   }
   if (natural || planar) PetscCall(SetUpNormals(ancf));

@@ -56,6 +56,7 @@ typedef struct {
   char mesh[PETSC_MAX_PATH_LEN], group[PETSC_MAX_PATH_LEN]; /* Gmsh file and physical name of its axis; empty: none, the name */
   PetscReal pointload[3], pointat, lineload[3];             /* N, fraction of the length, N/m */
   PetscReal moment[2][3], ramp;                             /* at its ends, N m; s */
+  PetscReal *curve;                                         /* of the spec, or NULL */
 } SceneBeam;
 typedef struct {
   char name[APP_NAME_LEN];
@@ -150,6 +151,8 @@ typedef struct {
   SceneLink *links;
   PetscInt nregions;
   SceneRegion *regions;
+  PetscInt nmeshjoints;
+  SceneLink *meshjoints; /* of beams from meshes; they become the first links */
   PetscInt ngrids, nprobes;
   SceneGrid *grids;
   SceneProbe *probes;
@@ -260,15 +263,28 @@ PetscErrorCode AppBuildShortBeams(App *app);
 PetscErrorCode AppCheckOverlap(App *app);
 PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v[3]);
 
-/* scenemesh.c: beams from a Gmsh mesh, the last file being kept; the chain of a group makes start, end, elements, curvature. */
+/* scenemesh.c: beams from a Gmsh mesh, the last file being kept; a group of lines makes start, end, elements, curvature, curve.
+ */
 typedef struct {
   char file[PETSC_MAX_PATH_LEN];
   DM dm;
   const char *scene; /* file of the scene, or NULL */
 } AppMesh;
-PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam);
+typedef struct {
+  PetscInt n, njoints;
+  SceneBeam *beam;
+  SceneLink *joint; /* beams counted from the first of these */
+} AppPieces;
+PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam, AppPieces *pieces);
 PetscErrorCode AppMeshDestroy(AppMesh *mesh);
 PetscErrorCode AppFindFile(const char scene[], char file[PETSC_MAX_PATH_LEN]);
+
+/* scenecurve.c: lines, arcs and other curves through points. */
+void AppCurveTangent(const PetscReal a[3], const PetscReal b[3], const PetscReal c[3], PetscReal t[3]);
+PetscErrorCode AppCurveSimple(PetscInt m, const PetscReal *x, const PetscReal *t0, const PetscReal *t1, PetscInt n,
+                              AncfBeamSpec *spec, PetscBool *done);
+PetscErrorCode AppCurveGeneral(PetscInt m, const PetscReal *x, const PetscReal *t0, const PetscReal *t1, PetscInt n,
+                               AncfBeamSpec *spec, PetscReal **curve, PetscReal *off);
 
 /* sceneload.c: permanent loads of beams; power: of the moments at their ends now, W. */
 PetscErrorCode AppBuildBeamLoads(App *app);

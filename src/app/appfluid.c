@@ -55,12 +55,40 @@ static PetscBool inside_arc(const AncfBeamSpec *spec, PetscInt dim, const PetscR
   return (PetscBool)(PetscAbsReal(angle) <= PetscAbsReal(half) && off * off + z * z < PetscSqr(spec->diameter / 2));
 }
 
-/* How far the arc rises over its chord, m. */
+#define CURVE_PARTS 16 /* straight parts of an element: off by (l kappa)^2/2048 of its length l */
+
+/* A curve of elements, as a tube around straight parts and the wedges between them; beyond its flat ends it is outside. */
+static PetscBool inside_curve(const AncfBeamSpec *spec, PetscInt dim, const PetscReal x[3])
+{
+  const PetscInt n = CURVE_PARTS * spec->elements;
+  PetscReal a[6], b[6], before = 0;
+
+  if (AncfBeamSpecGetPoint(spec, 0, b)) return PETSC_FALSE;
+  for (PetscInt k = 0; k < n; k++) {
+    PetscReal s = 0, h2 = 0, r2 = 0, part;
+
+    for (int c = 0; c < 6; c++) a[c] = b[c];
+    if (AncfBeamSpecGetPoint(spec, (PetscReal)(k + 1) / (PetscReal)n, b)) return PETSC_FALSE;
+    for (PetscInt c = 0; c < dim; c++) {
+      s += (x[c] - a[c]) * (b[c] - a[c]);
+      h2 += PetscSqr(b[c] - a[c]);
+    }
+    s /= h2;
+    part = PetscMax(0, s);
+    for (PetscInt c = 0; c < dim; c++) r2 += PetscSqr(x[c] - a[c] - part * (b[c] - a[c]));
+    if (s <= 1 && (s >= 0 || before > 1) && r2 < PetscSqr(spec->diameter / 2)) return PETSC_TRUE;
+    before = s;
+  }
+  return PETSC_FALSE;
+}
+
+/* How far the axis reaches beyond the box of its ends, m: the rise of an arc over its chord; the length of a curve is enough. */
 static PetscReal rise_of(const AncfBeamSpec *spec)
 {
   PetscReal chord2 = 0;
 
   for (int a = 0; a < 3; a++) chord2 += PetscSqr(spec->end[a] - spec->start[a]);
+  if (spec->curve) return spec->curvelength;
   if (spec->curvature == 0) return 0;
   return (1 - PetscSqrtReal(PetscMax(0, 1 - PetscSqr(spec->curvature) * chord2 / 4))) / PetscAbsReal(spec->curvature);
 }
@@ -69,6 +97,7 @@ static PetscBool inside_beam(const AncfBeamSpec *spec, PetscInt dim, const Petsc
 {
   PetscReal L2 = 0, s = 0, r2 = 0, t[3];
 
+  if (spec->curve) return inside_curve(spec, dim, x);
   if (spec->curvature != 0) return inside_arc(spec, dim, x);
   for (PetscInt a = 0; a < dim; a++) {
     t[a] = spec->end[a] - spec->start[a];

@@ -239,6 +239,18 @@ static PetscBool names_absent(const AppKnown *list, const char name[], const cha
   return PETSC_FALSE;
 }
 
+/* beam_<name>_p<number>_<key>: a piece of a beam from a mesh, not known before the mesh is read. */
+static PetscBool names_piece(const char name[])
+{
+  const char *at = strncmp(name, "beam_", 5) ? NULL : strstr(name + 5, "_p");
+
+  for (; at; at = strstr(at + 2, "_p")) {
+    const size_t digits = strspn(at + 2, "0123456789");
+    if (digits && at[2 + digits] == '_') return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* What is wrong with an option that nothing asked for; empty for nothing. */
 static void complain(const AppKnown *list, const char name[], PetscBool only_unlisted, size_t len, char text[])
 {
@@ -249,7 +261,7 @@ static void complain(const AppKnown *list, const char name[], PetscBool only_unl
   text[0] = 0;
   if (is_petsc_wide(name)) return;
   look_up(list, name, &known, &nearest);
-  if (known && only_unlisted) return;
+  if ((known || names_piece(name)) && only_unlisted) return;
   if (known)
     snprintf(text, len, "option %s has no effect in this scene", name);
   else if (names_absent(list, name, &absent, &length))

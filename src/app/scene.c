@@ -210,7 +210,8 @@ static PetscErrorCode read_beam(const char prefix[], const char title[], SceneBe
        beam->moment[0], NULL, NULL},
       {OPT_VEC, "moment1", "Moment at the last end, N m; 2D: N", beam->moment[1], NULL, NULL},
       {OPT_REAL, "load_ramp", "Time over which these loads come up linearly from 0, s (0: at once)", &beam->ramp, NULL, NULL},
-      {OPT_STRING, "mesh", "Gmsh file whose lines give start, end, elements, curvature and normal", beam->mesh, NULL, NULL},
+      {OPT_STRING, "mesh", "Gmsh file whose lines give the axis, and several beams <name>_p0, <name>_p1, ... where they branch",
+       beam->mesh, NULL, NULL},
       {OPT_STRING, "group", "Physical name of the lines in the mesh (default: the beam's name)", beam->group, NULL, NULL},
       {OPT_CHOICE, "end0", "Support of the first end", &end0, ends, NULL},
       {OPT_CHOICE, "end1", "Support of the last end", &end1, ends, NULL},
@@ -267,9 +268,89 @@ static PetscErrorCode read_body(const char prefix[], const char title[], SceneBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for n beams, and the beams so far in it. */
+static PetscErrorCode grow_beams(AppScene *s, PetscInt n)
+{
+  SceneBeam *more;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n, &more));
+  PetscCall(PetscArraycpy(more, s->beams, s->nbeams));
+  PetscCall(PetscFree(s->beams));
+  s->beams = more;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One piece of a group of lines may have options of its own. */
+static PetscErrorCode read_piece(SceneBeam *beam)
+{
+  static const char *const keys[] = {"start", "end", "elements", "curvature", "normal"};
+  char prefix[128], title[128], mesh[PETSC_MAX_PATH_LEN], group[PETSC_MAX_PATH_LEN];
+  PetscBool set[5] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(mesh, beam->mesh, PETSC_MAX_PATH_LEN));
+  PetscCall(PetscArraycpy(group, beam->group, PETSC_MAX_PATH_LEN));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "beam_%s_", beam->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Beam '%s'", beam->name));
+  PetscCall(read_beam(prefix, title, beam, set));
+  for (int k = 0; k < 5; k++)
+    PetscCheck(!set[k], PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP, "beam '%s': %s is given but comes from its mesh '%s'", beam->name,
+               keys[k], mesh);
+  PetscCheck(!strcmp(mesh, beam->mesh) && !strcmp(group, beam->group), PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+             "beam '%s': it is a piece of the mesh '%s', group '%s', and takes no mesh or group of its own", beam->name, mesh,
+             group);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The beams that the mesh of one beam makes; left: how many beams are still to come. */
+static PetscErrorCode take_pieces(AppScene *s, AppMesh *mesh, const SceneBeam *beam, PetscInt left)
+{
+  AppPieces pieces;
+  SceneBeam one = *beam;
+
+  PetscFunctionBegin;
+  PetscCall(AppMeshBeam(mesh, &one, &pieces));
+  for (int k = 0; k < 3 && pieces.n > 1; k++)
+    PetscCheck(one.pointload[k] == 0 && one.moment[0][k] == 0 && one.moment[1][k] == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP,
+               "beam '%s': its lines make %" PetscInt_FMT
+               " beams, %s_p0, %s_p1, ...; give beam_%s_p0_point_load or such for one of "
+               "them",
+               one.name, pieces.n, one.name, one.name, one.name);
+  if (pieces.n > 1) PetscCall(grow_beams(s, s->nbeams + pieces.n + left));
+  PetscCall(PetscRealloc(sizeof(SceneLink) * (size_t)(s->nmeshjoints + pieces.njoints), &s->meshjoints));
+  for (PetscInt i = 0; i < pieces.njoints; i++) {
+    SceneLink *l = &s->meshjoints[s->nmeshjoints];
+
+    *l = pieces.joint[i];
+    for (PetscInt k = 0; k < l->n; k++) l->beam[k] += s->nbeams;
+    PetscCall(PetscSNPrintf(l->name, sizeof(l->name), "%.20s_joint%" PetscInt_FMT, one.name, i));
+    s->nmeshjoints++;
+  }
+  for (PetscInt i = 0; i < pieces.n; i++) {
+    if (pieces.n > 1) PetscCall(read_piece(&pieces.beam[i]));
+    s->beams[s->nbeams++] = pieces.beam[i];
+  }
+  PetscCall(PetscFree(pieces.beam));
+  PetscCall(PetscFree(pieces.joint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode check_beam_names(const AppScene *s)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->nbeams; i++)
+    for (PetscInt j = 0; j < i && (s->nmeshjoints || s->beams[i].mesh[0]); j++)
+      PetscCheck(strcasecmp(s->beams[i].name, s->beams[j].name), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+                 "beams: the name '%s' is that of a piece of the mesh '%s' already", s->beams[i].name,
+                 s->beams[s->beams[j].mesh[0] ? j : i].mesh);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode read_beams(AppScene *s, const AppNames *names, const char file[], PetscBool help)
 {
-  SceneBeam all;
+  static const char *const keys[] = {"start", "end", "elements", "curvature", "normal"};
+  SceneBeam all, one;
   AppMesh mesh = {"", NULL, file};
   PetscBool allset[5] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
   char prefix[128], title[128];
@@ -281,28 +362,27 @@ static PetscErrorCode read_beams(AppScene *s, const AppNames *names, const char 
   if (names->n || help) PetscCall(read_beam("beam_", "Beams: the same for all; -beam_<name>_... for one", &all, allset));
   for (PetscInt i = 0; i < names->n; i++) {
     PetscBool set[5];
-    SceneBeam *beam = &s->beams[i];
 
-    *beam = all;
+    one = all;
     PetscCall(PetscArraycpy(set, allset, 5));
-    PetscCall(PetscStrncpy(beam->name, names->name[i], APP_NAME_LEN));
+    PetscCall(PetscStrncpy(one.name, names->name[i], APP_NAME_LEN));
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "beam_%s_", names->name[i]));
     PetscCall(PetscSNPrintf(title, sizeof(title), "Beam '%s'", names->name[i]));
-    PetscCall(read_beam(prefix, title, beam, set));
-    if (beam->mesh[0]) {
-      const char *const keys[] = {"start", "end", "elements", "curvature", "normal"};
-
-      for (int k = 0; k < 5; k++)
-        PetscCheck(!set[k], PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP, "beam '%s': %s is given but comes from its mesh '%s'",
-                   beam->name, keys[k], beam->mesh);
-      if (!help) PetscCall(AppMeshBeam(&mesh, beam));
+    PetscCall(read_beam(prefix, title, &one, set));
+    for (int k = 0; k < 5 && one.mesh[0]; k++)
+      PetscCheck(!set[k], PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP, "beam '%s': %s is given but comes from its mesh '%s'", one.name,
+                 keys[k], one.mesh);
+    if (one.mesh[0] && !help) {
+      PetscCall(take_pieces(s, &mesh, &one, names->n - i - 1));
       continue;
     }
-    PetscCheck(!beam->group[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s': group '%s' needs a mesh", beam->name,
-               beam->group);
+    s->beams[s->nbeams++] = one;
+    if (one.mesh[0]) continue;
+    PetscCheck(!one.group[0], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s': group '%s' needs a mesh", one.name, one.group);
     PetscCheck(set[0] && set[1], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "beam '%s' needs %s%s", names->name[i], prefix,
                set[0] ? "end" : "start");
   }
+  PetscCall(check_beam_names(s));
   PetscCall(AppMeshDestroy(&mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -354,7 +434,6 @@ static PetscErrorCode read_structures(AppScene *s, const char file[])
   PetscFunctionBegin;
   PetscCall(AppOptionsRead(NULL, "Scene: structures", COUNT(opt), opt));
   PetscCall(PetscOptionsHasHelp(NULL, &help));
-  s->nbeams = beams.n;
   s->nbodies = bodies.n;
   PetscCall(PetscCalloc1(beams.n, &s->beams));
   PetscCall(read_beams(s, &beams, file, help));
@@ -481,6 +560,7 @@ PetscErrorCode AppSceneCheck(const AppScene *s, PetscInt dim)
 PetscErrorCode AppSceneDestroy(AppScene *s)
 {
   PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->nbeams; i++) PetscCall(PetscFree(s->beams[i].curve));
   PetscCall(PetscFree(s->beams));
   PetscCall(PetscFree(s->bodies));
   PetscCall(PetscFree(s->lumped));

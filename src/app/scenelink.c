@@ -88,7 +88,10 @@ PetscErrorCode AppSceneReadLinks(AppScene *s)
   PetscCall(PetscOptionsHasHelp(NULL, &help));
   PetscCall(PetscMemzero(&all, sizeof(all)));
   if (names.n || help) PetscCall(read_link("link_", "Links: the same for all; -link_<name>_... for one", &all));
-  PetscCall(PetscCalloc1(names.n, &s->links));
+  PetscCall(PetscCalloc1(s->nmeshjoints + names.n, &s->links));
+  PetscCall(PetscArraycpy(s->links, s->meshjoints, s->nmeshjoints));
+  s->nlinks = s->nmeshjoints;
+  s->nmeshjoints = 0;
   for (PetscInt i = 0; i < names.n; i++) {
     SceneLink *l = &s->links[s->nlinks++];
 
@@ -108,7 +111,9 @@ PetscErrorCode AppSceneFreeLinks(AppScene *s)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < s->nlinks; i++)
     if (s->links[i].beam) PetscCall(PetscFree2(s->links[i].beam, s->links[i].node));
+  for (PetscInt i = 0; i < s->nmeshjoints; i++) PetscCall(PetscFree2(s->meshjoints[i].beam, s->meshjoints[i].node));
   PetscCall(PetscFree(s->links));
+  PetscCall(PetscFree(s->meshjoints));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
