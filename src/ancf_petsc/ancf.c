@@ -140,7 +140,7 @@ PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number
   if (spec->curve) {
     PetscReal *copy;
 
-    PetscCall(PetscMalloc1(6 * (spec->elements + 1), &copy));
+    PetscCall(PetscMalloc1(6 * (size_t)(spec->elements + 1), &copy));
     PetscCall(PetscArraycpy(copy, spec->curve, 6 * (spec->elements + 1)));
     beam.spec.curve = copy;
   }

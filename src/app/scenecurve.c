@@ -212,8 +212,8 @@ PetscErrorCode AppCurveGeneral(PetscInt m, const PetscReal *x, const PetscReal *
   PetscInt k = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(3 * (m + 1), &t, m + 1, &s));
-  PetscCall(PetscMalloc1(6 * (n + 1), curve));
+  PetscCall(PetscMalloc2(3 * (size_t)(m + 1), &t, (size_t)m + 1, &s));
+  PetscCall(PetscMalloc1(6 * (size_t)(n + 1), curve));
   tangents(m, x, t0, t1, t);
   plane(m, x, t, spec->normal);
   s[0] = *off = 0;

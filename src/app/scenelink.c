@@ -88,7 +88,7 @@ PetscErrorCode AppSceneReadLinks(AppScene *s)
   PetscCall(PetscOptionsHasHelp(NULL, &help));
   PetscCall(PetscMemzero(&all, sizeof(all)));
   if (names.n || help) PetscCall(read_link("link_", "Links: the same for all; -link_<name>_... for one", &all));
-  PetscCall(PetscCalloc1(s->nmeshjoints + names.n, &s->links));
+  PetscCall(PetscCalloc1((size_t)(s->nmeshjoints + names.n), &s->links));
   PetscCall(PetscArraycpy(s->links, s->meshjoints, s->nmeshjoints));
   s->nlinks = s->nmeshjoints;
   s->nmeshjoints = 0;

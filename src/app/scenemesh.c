@@ -122,7 +122,7 @@ static PetscErrorCode find_lines(Chain *c)
   c->nv = hi - c->v0;
   PetscCall(DMPlexGetHeightStratum(c->dm, 0, &lo, &hi));
   PetscCall(DMLabelGetDefaultValue(label, &none));
-  PetscCall(PetscMalloc2(2 * (hi - lo), &c->edge, hi - lo, &c->line));
+  PetscCall(PetscMalloc2(2 * (size_t)(hi - lo), &c->edge, (size_t)(hi - lo), &c->line));
   for (PetscInt e = lo; e < hi; e++) {
     const PetscInt *cone;
 
@@ -151,7 +151,7 @@ static PetscErrorCode read_places(Chain *c)
   PetscCall(DMGetCoordinatesLocal(c->dm, &places));
   PetscCall(DMGetCoordinateSection(c->dm, &section));
   PetscCall(PetscSectionGetChart(section, &lo, &hi));
-  PetscCall(PetscCalloc2(3 * c->nv, &c->vertex, 3 * c->n, &c->middle));
+  PetscCall(PetscCalloc2(3 * (size_t)c->nv, &c->vertex, 3 * (size_t)c->n, &c->middle));
   PetscCall(VecGetArrayRead(places, &all));
   for (PetscInt v = 0; v < c->nv; v++) {
     PetscCall(PetscSectionGetDof(section, v + c->v0, &dof));
@@ -193,7 +193,7 @@ static PetscErrorCode meet(Chain *c)
   PetscInt *fill;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(c->nv + 1, &c->first, 2 * c->n, &c->at, c->nv, &c->ends));
+  PetscCall(PetscCalloc3((size_t)c->nv + 1, &c->first, 2 * (size_t)c->n, &c->at, (size_t)c->nv, &c->ends));
   PetscCall(PetscCalloc1(c->nv, &fill));
   for (PetscInt k = 0; k < 2 * c->n; k++) c->first[c->edge[k] + 1]++;
   for (PetscInt v = 0; v < c->nv; v++) {
@@ -592,7 +592,7 @@ PetscErrorCode AppMeshBeam(AppMesh *mesh, SceneBeam *beam, AppPieces *out)
   PetscCall(check_lines(&c));
   PetscCall(check_connected(&c));
   PetscCall(check_folds(&c));
-  PetscCall(PetscMalloc3(c.n, &c.order, c.n, &c.piece, 3 * (2 * c.n + 1), &x));
+  PetscCall(PetscMalloc3(c.n, &c.order, c.n, &c.piece, 3 * (2 * (size_t)c.n + 1), &x));
   PetscCall(cut(&c));
   PetscCall(add_ends(&c, &scratch, x));
   PetscCall(cut(&c));
