@@ -73,6 +73,12 @@ link_hook: {type: rigid, nodes: rod.end, body: ball}
 """)
 frond.runs("run", "pendulum.yaml", "-time_end", "0.2", "-checkpoint_every", "0.1")
 swing = history("out_pendulum")
+# Repulsion and lubrication leave a beam and the body that it is attached to alone: the same motion to the bit
+# (but for the last step, which is cut to the end of the run).
+frond.runs("run", "pendulum.yaml", "-time_end", "0.05", "-rigid_contact_modulus", "1e7", "-rigid_lubrication_viscosity", "1",
+           "-rigid_lubrication_cutoff", "0.01", "-rigid_roughness", "1e-3", "-output_dir", "out_short")
+short = history("out_short")
+apptest.check(all(short["rod_tip_" + c][:-1] == swing["rod_tip_" + c][:len(short["time"]) - 1] for c in "xyz"), "no short-range force at the attachment")
 m, l, g, r = 7200 * math.pi / 4 * 0.04 ** 2 * 0.5, 0.5, 9.81, 0.06
 M = 3000 * 4 / 3 * math.pi * r ** 3
 inertia, lever = m * l * l / 3 + M * (l + r) ** 2 + 0.4 * M * r * r, m * l / 2 + M * (l + r)

@@ -353,6 +353,191 @@ static PetscErrorCode TestBadInput(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lubrication and repulsion within 10 mm; with the attachment made known or not. */
+static PetscErrorCode MakeShort(const Pair *p, PetscBool known, CoupleShort *sr)
+{
+  ShortRange range;
+
+  PetscFunctionBegin;
+  PetscCall(ShortRangeInit(&range));
+  range.viscosity = 2;
+  range.cutoff = 0.01;
+  range.roughness = 2e-3;
+  range.modulus = 1e8;
+  PetscCall(CoupleShortCreate(PETSC_COMM_SELF, p->ancf, p->rigid, sr));
+  PetscCall(CoupleShortSetParameters(*sr, &range));
+  if (known) PetscCall(CoupleShortSetAttach(*sr, p->attach));
+  PetscCall(CoupleShortSetUp(*sr));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One step with short-range forces, as couplings and the frond command make it. */
+static PetscErrorCode ShortStep(const Pair *p, CoupleShort sr, PetscReal t, PetscReal dt, PetscInt *contacts, PetscReal *gap)
+{
+  PetscFunctionBegin;
+  PetscCall(AncfZeroLoads(p->ancf));
+  PetscCall(CoupleShortApply(sr, dt));
+  PetscCall(CoupleShortGetForces(sr, contacts, gap, NULL, NULL));
+  PetscCall(CoupleAttachAdvance(p->attach, t));
+  PetscCall(CoupleShortRemove(sr));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  Short-range forces leave a beam and its body alone at the attachment: a spinning pair has the bits of one without such forces,
+  while it would feel them from the first step if the attachment were not known. A body in front of the beam's other end is felt.
+*/
+static PetscErrorCode TestShortAlone(void)
+{
+  const PetscInt node = 0;
+  const PetscReal V[3] = {0.3, -0.2, 0.1}, w[3] = {1, -2, 3}, *e;
+  PetscReal x[2][30];
+  PetscInt contacts = -1, most = 0;
+  AncfBeamSpec s;
+  RigidBodySpec box[2];
+  CoupleShort sr;
+  Pair p;
+
+  PetscFunctionBegin;
+  PetscCall(Beam(0.1, 1, 20e6, &s));
+  PetscCall(Box(0, 2, &box[0]));
+  PetscCall(Box(1.1 + 0.005 + 0.1, 2, &box[1]));
+  for (int with = 0; with < 2; with++) {
+    PetscCall(PairCreate(&s, 1, box, &node, ANCF_END_CLAMP, 0, "", &p));
+    PetscCall(Spin(&p, V, w, 1));
+    if (with) PetscCall(MakeShort(&p, PETSC_TRUE, &sr));
+    for (int i = 1; i <= 50; i++) {
+      if (with)
+        PetscCall(ShortStep(&p, sr, 1e-3 * i, 1e-3, &contacts, NULL));
+      else
+        PetscCall(CoupleAttachAdvance(p.attach, 1e-3 * i));
+      most = PetscMax(most, contacts);
+    }
+    PetscCall(AncfGetState(p.ancf, NULL, &e, NULL, NULL));
+    PetscCall(PetscArraycpy(x[with], e, 30));
+    if (with) PetscCall(CoupleShortDestroy(&sr));
+    PetscCall(PairDestroy(&p));
+  }
+  TEST(most == 0, "%d contacts at the attachment", (int)most);
+  for (int i = 0; i < 30; i++) TEST(x[0][i] == x[1][i], "bits of the motion, coordinate %d", i);
+  for (int known = 0; known < 2; known++) {
+    PetscCall(PairCreate(&s, 1, box, &node, ANCF_END_CLAMP, 0, "", &p));
+    PetscCall(MakeShort(&p, (PetscBool)known, &sr));
+    PetscCall(CoupleShortApply(sr, 1e-3));
+    PetscCall(CoupleShortGetForces(sr, &contacts, NULL, NULL, NULL));
+    TEST(known ? contacts == 0 : contacts > 0, "%d contacts, attachment %sknown", (int)contacts, known ? "" : "not ");
+    PetscCall(CoupleShortDestroy(&sr));
+    PetscCall(PairDestroy(&p));
+  }
+  { /* node 0 on the first body, the other one free and near the end of the beam */
+    PetscReal f[3];
+
+    PetscCall(PairCreate(&s, 1, box, &node, ANCF_END_CLAMP, 0, "", &p));
+    PetscCall(RigidDestroy(&p.rigid));
+    PetscCall(CoupleAttachDestroy(&p.attach));
+    PetscCall(RigidCreate(PETSC_COMM_SELF, &p.rigid));
+    for (int k = 0; k < 2; k++) PetscCall(RigidAddBody(p.rigid, &box[k], NULL));
+    PetscCall(RigidSetUp(p.rigid));
+    PetscCall(CoupleAttachCreate(PETSC_COMM_SELF, p.ancf, p.rigid, &p.attach));
+    PetscCall(CoupleAttachAdd(p.attach, 0, 0, 0));
+    PetscCall(CoupleAttachSetUp(p.attach));
+    PetscCall(RigidSetState(p.rigid, 1, NULL, NULL, (PetscReal[3]){-1, 0, 0}, NULL));
+    PetscCall(MakeShort(&p, PETSC_TRUE, &sr));
+    PetscCall(CoupleShortApply(sr, 1e-3));
+    PetscCall(CoupleShortGetForces(sr, &contacts, NULL, NULL, f));
+    TEST(contacts > 0 && f[0] > 0, "the body at the free end is felt: %d contacts, %g N", (int)contacts, (double)f[0]);
+    PetscCall(CoupleShortDestroy(&sr));
+    PetscCall(PairDestroy(&p));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  A free beam, crosswise and 8 mm above the attached one, meets it at 2 m/s: the impulse goes through beam and body. Linear
+  momentum: to the tolerance of the attachment's forces, as in TestFlight(), times the impulses exchanged. Angular momentum: the
+  force F of a step acts at the places predicted for its middle; they are off by F/m h^2/8, m being the mass of the stretch in
+  touch, a diameter of each beam at least; the attached clamp adds what it does there. alpha2 of a radius below 1 hands a constant
+  load on over some steps, and the attachment, which has the load at once, is ahead of the free beam by what is under way: F dt at
+  most.
+*/
+static PetscErrorCode TestShortMeeting(PetscReal mass, const char options[])
+{
+  const PetscInt node = 0;
+  const PetscReal dt = 2e-4, tol = TOLERANCE * (1 + 18.1 / mass);
+  PetscReal P0[3], L0[3], E0, P[3], L[3], E, F[3], M[3], impulse = 0, bound = 0, last, gap, least = PETSC_INFINITY, v[60], f = 0;
+  PetscReal dP = 0, dL = 0, m[6], l[6], q[6], T[6];
+  PetscReal under = 0;
+  PetscInt contacts, most = 0;
+  const PetscReal *e;
+  PetscOptions o;
+  AncfBeamSpec s, other;
+  RigidBodySpec box;
+  CoupleShort sr;
+  Pair p;
+
+  PetscFunctionBegin;
+  PetscCall(Beam(0.1, 1, 20e6, &s));
+  PetscCall(Box(0, mass, &box));
+  PetscCall(Beam(0, 1, 20e6, &other));
+  for (int c = 0; c < 2; c++) {
+    PetscReal *x = c ? other.end : other.start;
+
+    x[0] = 0.7, x[1] = c ? 0.5 : -0.5, x[2] = 0.048;
+  }
+  PetscCall(PetscMemzero(&p, sizeof(p)));
+  PetscCall(AncfCreate(PETSC_COMM_SELF, &p.ancf));
+  PetscCall(AncfAddBeam(p.ancf, &s, NULL));
+  PetscCall(AncfAddBeam(p.ancf, &other, NULL));
+  PetscCall(AncfFixNode(p.ancf, 0, node, ANCF_END_CLAMP));
+  PetscCall(PetscOptionsCreate(&o));
+  PetscCall(PetscOptionsInsertString(o, options));
+  PetscCall(PetscOptionsPush(o));
+  PetscCall(AncfSetFromOptions(p.ancf));
+  PetscCall(AncfSetUp(p.ancf));
+  PetscCall(PetscOptionsPop());
+  PetscCall(PetscOptionsDestroy(&o));
+  PetscCall(RigidCreate(PETSC_COMM_SELF, &p.rigid));
+  PetscCall(RigidAddBody(p.rigid, &box, NULL));
+  PetscCall(RigidSetUp(p.rigid));
+  PetscCall(CoupleAttachCreate(PETSC_COMM_SELF, p.ancf, p.rigid, &p.attach));
+  PetscCall(CoupleAttachAdd(p.attach, 0, node, 0));
+  PetscCall(CoupleAttachSetUp(p.attach));
+  PetscCall(AncfGetState(p.ancf, NULL, &e, NULL, NULL));
+  for (int i = 0; i < 60; i++) v[i] = i >= 30 && i % 6 == 2 ? -2 : 0;
+  PetscCall(AncfSetState(p.ancf, 0, e, v));
+  PetscCall(MakeShort(&p, PETSC_TRUE, &sr));
+  PetscCall(Momenta(&p, P0, L0, &E0));
+  PetscCall(AncfGetBeamBalances(p.ancf, m, l, q, T));
+  last = m[5];
+  for (int i = 1; i <= 200; i++) {
+    PetscCall(ShortStep(&p, sr, i * dt, dt, &contacts, &gap));
+    most = PetscMax(most, contacts);
+    least = PetscMin(least, gap);
+    PetscCall(AncfGetBeamBalances(p.ancf, m, l, q, T));
+    f = PetscAbsReal(m[5] - last) / dt;
+    last = m[5];
+    if (!options[0]) under = PetscMax(under, f * dt);
+    bound += dt * f * f * dt * dt / 8 / (7200 * PETSC_PI * 4e-4 * 0.04);
+    PetscCall(CoupleAttachGetForce(p.attach, 0, F, M));
+    for (int c = 0; c < 3; c++) impulse += dt * (PetscAbsReal(F[c]) + PetscAbsReal(M[c]) / 0.05);
+  }
+  PetscCall(Momenta(&p, P, L, &E));
+  for (int c = 0; c < 3; c++) dP = PetscMax(dP, PetscAbsReal(P[c] - P0[c])), dL = PetscMax(dL, PetscAbsReal(L[c] - L0[c]));
+  printf(
+      "meeting beams, body of %g kg: %d contacts, gap down to %g m, momentum given %g, off by %.1e kg m/s, angular %.1e of %.1e, "
+      "energy %g of %g J\n",
+      (double)mass, (int)most, (double)least, (double)(last - -2 * 9.05), (double)dP, (double)dL, (double)bound, (double)E,
+      (double)E0);
+  TEST(most > 0 && least > -0.004, "they touch, and overlap by less than a tenth of a diameter: %g m", (double)least);
+  TEST(last - -2 * 9.05 > 1, "momentum is exchanged");
+  TEST_NEAR(dP, 0, tol * impulse + under, "linear momentum");
+  TEST_NEAR(dL, 0, bound + 2 * tol * impulse + under, "angular momentum");
+  TEST(E <= E0 * (1 + 1e-3), "no energy from nowhere: %g of %g J", (double)E, (double)E0);
+  PetscCall(CoupleShortDestroy(&sr));
+  PetscCall(PairDestroy(&p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
@@ -368,6 +553,10 @@ int main(int argc, char **argv)
     PetscCall(TestPendulum((AncfEnd)how));
   }
   PetscCall(TestPrescribed());
+  PetscCall(TestShortAlone());
+  PetscCall(TestShortMeeting(5, "-ancf_ts_alpha_radius 1"));
+  PetscCall(TestShortMeeting(0.5, "-ancf_ts_alpha_radius 1"));
+  PetscCall(TestShortMeeting(5, ""));
   PetscCall(TestState());
   PetscCall(TestBadInput());
   PetscCall(PetscFinalize());

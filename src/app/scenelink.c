@@ -223,9 +223,6 @@ PetscErrorCode AppBuildAttach(App *app)
                l->name, l->body);
     PetscCall(CoupleAttachGetNum(app->attach, &l->first));
     for (PetscInt k = 0; k < l->n; k++) {
-      PetscCheck(!app->shortrange, PETSC_COMM_SELF, PETSC_ERR_SUP,
-                 "link '%s': short-range forces of beams would push the beam and its body '%s' apart; leave them out", l->name,
-                 l->body);
       AppDoing(app, "link '%s'", l->name);
       PetscCall(CoupleAttachAdd(app->attach, l->beam[k], l->node[k], body));
       AppDoing(app, "%s", "");

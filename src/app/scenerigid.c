@@ -279,6 +279,7 @@ PetscErrorCode AppBuildShortBeams(App *app)
   PetscCall(CoupleShortCreate(PETSC_COMM_SELF, app->ancf, app->rigid, &app->shortrange));
   PetscCall(CoupleShortSetFromOptions(app->shortrange));
   PetscCall(CoupleShortSetPeriod(app->shortrange, period));
+  PetscCall(CoupleShortSetAttach(app->shortrange, app->attach));
   for (PetscInt w = 0; w < walls; w++) PetscCall(CoupleShortAddWall(app->shortrange, x[w], n[w]));
   ierr = CoupleShortSetUp(app->shortrange);
   if (ierr && app->errors) {

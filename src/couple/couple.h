@@ -243,6 +243,12 @@ FROND_EXTERN PetscErrorCode CoupleShortSetPeriod(CoupleShort sr, const PetscReal
 /* A flat wall at rest, at most 6. sr: the forces. x: 3, a point of its face, m. normal: 3, into the free side, of any length > 0.
  */
 FROND_EXTERN PetscErrorCode CoupleShortAddWall(CoupleShort sr, const PetscReal x[3], const PetscReal normal[3]);
+/*
+  Attached beams and their bodies: a beam and its body leave one another alone near the place of attachment, as do beams that are
+  attached to one body in places close together. sr: the forces; before CoupleShortSetUp(). attach: set up; kept, not owned; NULL:
+  none.
+*/
+FROND_EXTERN PetscErrorCode CoupleShortSetAttach(CoupleShort sr, CoupleAttach attach);
 /* Read -couple_shortrange_samples and the options of ShortRangeSetFromOptions(). sr: the forces. */
 FROND_EXTERN PetscErrorCode CoupleShortSetFromOptions(CoupleShort sr);
 /* Check the parameters; refuse beams that overlap each other, a body or a wall, naming both. sr: the forces. */

@@ -4,7 +4,8 @@
   nearest, found on the cubic itself, and the other way round: each side counts half.
 
   Of a beam with itself, points less than pi (R + reach/2) apart along it are left out (a half circle whose legs are just out of
-  reach is as long), and come in smoothly up to 5/4 of that. Joined beams are treated as one beam through the joint.
+  reach is as long), and come in smoothly up to 5/4 of that. Joined beams are treated as one beam through the joint, and beams
+  that are attached to one body through the body; an attached beam leaves its body alone over the same length.
 */
 #include "coupleshort.h"
 
@@ -88,12 +89,12 @@ static PetscReal Share(PetscReal arc, PetscReal exclude)
   return Ramp(4. * (arc / exclude - 1.));
 }
 
-static PetscReal JoinedShare(const CoupleShort c, PetscInt a, PetscReal sa, PetscInt b, PetscReal sb)
+/* Length of the way from a point of one beam to one of another through a joint of both, or of one beam through a body. */
+static PetscReal JoinedArc(const CoupleShort c, PetscInt a, PetscReal sa, PetscInt b, PetscReal sb)
 {
-  const PetscReal exclude = PetscMax(c->beam[a].exclude, c->beam[b].exclude);
   PetscInt lo = 0, hi = c->njoints;
-  PetscReal share = 1.;
-  if (a > b) return JoinedShare(c, b, sb, a, sa);
+  PetscReal arc = PETSC_INFINITY;
+  if (a > b) return JoinedArc(c, b, sb, a, sa);
   while (lo < hi) {
     const PetscInt m = (lo + hi) / 2;
     const ShortJoint *j = &c->joint[m];
@@ -102,8 +103,29 @@ static PetscReal JoinedShare(const CoupleShort c, PetscInt a, PetscReal sa, Pets
     else
       hi = m;
   }
-  for (; lo < c->njoints && c->joint[lo].a == a && c->joint[lo].b == b; lo++)
-    share = PetscMin(share, Share(PetscAbsReal(sa - c->joint[lo].sa) + PetscAbsReal(sb - c->joint[lo].sb), exclude));
+  for (; lo < c->njoints && c->joint[lo].a == a && c->joint[lo].b == b; lo++) {
+    const ShortJoint *j = &c->joint[lo];
+    arc = PetscMin(arc, j->gap + PetscAbsReal(sa - j->sa) + PetscAbsReal(sb - j->sb));
+    if (a == b) arc = PetscMin(arc, j->gap + PetscAbsReal(sb - j->sa) + PetscAbsReal(sa - j->sb));
+  }
+  return arc;
+}
+
+static PetscReal JoinedShare(const CoupleShort c, PetscInt a, PetscReal sa, PetscInt b, PetscReal sb)
+{
+  const PetscReal arc = JoinedArc(c, a, sa, b, sb);
+  return arc == PETSC_INFINITY ? 1. : Share(arc, PetscMax(c->beam[a].exclude, c->beam[b].exclude));
+}
+
+/* A beam leaves the body alone that it, or a beam joined to it, is attached to; what of it is inside does not count. */
+static PetscReal AttachedShare(const CoupleShort c, PetscInt beam, PetscReal s, PetscInt body)
+{
+  PetscReal share = 1.;
+  for (PetscInt i = c->nattach ? c->bodyof[body] : 0; c->nattach && i < c->bodyof[body + 1]; i++) {
+    const ShortAttach *a = &c->attached[i];
+    const PetscReal arc = a->beam == beam ? PetscAbsReal(s - a->s) : JoinedArc(c, beam, s, a->beam, a->s);
+    if (arc < PETSC_INFINITY) share = PetscMin(share, Share(PetscMax(0., arc - a->depth), c->beam[beam].exclude));
+  }
   return share;
 }
 
@@ -129,7 +151,8 @@ static PetscErrorCode AddBeamPair(CoupleShort c, PetscInt a, PetscReal si, const
   ShortPair *p;
 
   PetscFunctionBegin;
-  share = a == b ? Share(PetscAbsReal(s - si), ba->exclude) : JoinedShare(c, a, si, b, s);
+  share = JoinedShare(c, a, si, b, s);
+  if (a == b) share = PetscMin(share, Share(PetscAbsReal(s - si), ba->exclude));
   if (share == 0.) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CoupleShortPlace(c, b, s, &at));
   for (int k = 0; k < 3; k++) d[k] = x[k] - at.x[k];
@@ -354,7 +377,7 @@ static PetscErrorCode LinkOnBody(CoupleShort c, const ShortLink *l, PetscInt bod
   PetscFunctionBegin;
   for (PetscInt i = l->first; i < l->first + l->n; i++) {
     const PetscReal *x = c->x + 3 * (b->sample + i), s = b->lo + ((PetscReal)i + .5) * b->step,
-                    share = spec->motion == RIGID_FREE ? 1. : EndShare(b, s);
+                    share = PetscMin(AttachedShare(c, l->beam, s, body), spec->motion == RIGID_FREE ? 1. : EndShare(b, s));
     PetscReal y[3], r[3], n[3], gap;
     for (int k = 0; k < 3; k++) {
       r[k] = Image(x[k] - X[k], c->period[k]);

@@ -9,6 +9,7 @@
   is a leapfrog rule that loses no energy. |M^-1| is that of the whole beam without stiffness, which only takes mobility away.
 */
 #include "coupleshort.h"
+#include "coupleattach.h"
 #include <stdlib.h>
 
 PetscErrorCode CoupleShortCreate(MPI_Comm comm, Ancf ancf, Rigid rigid, CoupleShort *sr)
@@ -42,6 +43,16 @@ PetscErrorCode CoupleShortSetSamples(CoupleShort c, PetscInt n)
   PetscCheck(n >= 2 && n <= 64, c->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "couple_shortrange_samples = %" PetscInt_FMT ": must be in [2, 64]", n);
   c->persample = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleShortSetAttach(CoupleShort c, CoupleAttach attach)
+{
+  PetscFunctionBegin;
+  PetscCheck(!c->setup, c->comm, PETSC_ERR_ORDER, "CoupleShortSetAttach() must come before CoupleShortSetUp()");
+  PetscCheck(!attach || (attach->setup && attach->ancf == c->ancf && attach->rigid == c->rigid), c->comm, PETSC_ERR_ARG_INCOMP,
+             "CoupleShortSetAttach(): the attachments must be set up, of the same beams and bodies");
+  c->attach = attach;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,12 +216,67 @@ static int CompareJoints(const void *pa, const void *pb)
   return a->sa < b->sa ? -1 : (a->sa > b->sa);
 }
 
+static int CompareAttached(const void *pa, const void *pb)
+{
+  const ShortAttach *a = (const ShortAttach *)pa, *b = (const ShortAttach *)pb;
+  if (a->body != b->body) return a->body < b->body ? -1 : 1;
+  if (a->beam != b->beam) return a->beam < b->beam ? -1 : 1;
+  return a->s < b->s ? -1 : (a->s > b->s);
+}
+
+static PetscErrorCode AddJoint(CoupleShort c, const ShortJoint *j)
+{
+  PetscFunctionBegin;
+  if (c->njoints == c->ajoints) {
+    c->ajoints = 2 * c->ajoints + 16;
+    PetscCall(PetscRealloc(sizeof(ShortJoint) * (size_t)c->ajoints, &c->joint));
+  }
+  c->joint[c->njoints++] = *j;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where beams are attached, body by body; two places on one body join their beams through it. */
+static PetscErrorCode FindAttached(CoupleShort c)
+{
+  const CoupleAttach l = c->attach;
+  const PetscReal *e;
+
+  PetscFunctionBegin;
+  if (!l || !l->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2((size_t)l->n, &c->attached, (size_t)c->nbodies + 1, &c->bodyof));
+  PetscCall(AncfGetState(c->ancf, NULL, &e, NULL, NULL));
+  for (c->nattach = 0; c->nattach < l->n; c->nattach++) {
+    const Attachment *from = &l->a[c->nattach];
+    ShortAttach *to = &c->attached[c->nattach];
+    RigidBodySpec spec;
+
+    PetscCall(RigidGetBody(c->rigid, from->body, &spec));
+    to->beam = from->beam;
+    to->body = from->body;
+    to->s = c->beam[from->beam].l * (PetscReal)from->node;
+    to->depth = PetscMax(0., -RigidShapeDistance(&spec, from->place));
+    PetscCall(PetscArraycpy(to->x, e + 6 * from->at, 3));
+    c->bodyof[from->body + 1]++;
+  }
+  qsort(c->attached, (size_t)c->nattach, sizeof(*c->attached), CompareAttached);
+  for (PetscInt b = 0; b < c->nbodies; b++) c->bodyof[b + 1] += c->bodyof[b];
+  for (PetscInt i = 0; i < c->nattach; i++)
+    for (PetscInt j = i + 1; j < c->bodyof[c->attached[i].body + 1]; j++) {
+      const ShortAttach *a = &c->attached[i], *b = &c->attached[j];
+      PetscReal d2 = 0.;
+
+      for (int k = 0; k < 3; k++) d2 += PetscSqr(a->x[k] - b->x[k]);
+      PetscCall(AddJoint(c, &(ShortJoint){a->beam, b->beam, a->s, b->s, PetscSqrtReal(d2)}));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Nodes of different beams that lie in one place now. */
 static PetscErrorCode FindJoints(CoupleShort c)
 {
   ShortNode *node;
   const PetscReal *e;
-  PetscInt n = 0, alloc = 0;
+  PetscInt n = 0;
 
   PetscFunctionBegin;
   PetscCall(AncfGetNumJoints(c->ancf, &n));
@@ -230,13 +296,8 @@ static PetscErrorCode FindJoints(CoupleShort c)
       const ShortNode *a = node[i].beam < node[j].beam ? &node[i] : &node[j], *b = a == &node[i] ? &node[j] : &node[i];
       if (a->beam == b->beam || PetscAbsReal(a->x[1] - b->x[1]) + PetscAbsReal(a->x[2] - b->x[2]) > 1.e-6 * c->beam[a->beam].L)
         continue;
-      if (c->njoints == alloc) {
-        alloc = 2 * alloc + 16;
-        PetscCall(PetscRealloc(sizeof(ShortJoint) * (size_t)alloc, &c->joint));
-      }
-      c->joint[c->njoints++] = (ShortJoint){a->beam, b->beam, a->s, b->s};
+      PetscCall(AddJoint(c, &(ShortJoint){a->beam, b->beam, a->s, b->s, 0.}));
     }
-  if (c->njoints) qsort(c->joint, (size_t)c->njoints, sizeof(ShortJoint), CompareJoints);
   PetscCall(PetscFree(node));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -293,6 +354,8 @@ PetscErrorCode CoupleShortSetUp(CoupleShort c)
       l->n = PetscMin(c->persample, c->beam[i].samples - l->first);
     }
   PetscCall(FindJoints(c));
+  PetscCall(FindAttached(c));
+  if (c->njoints) qsort(c->joint, (size_t)c->njoints, sizeof(ShortJoint), CompareJoints);
   PetscCall(CheckOverlap(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -325,6 +388,7 @@ PetscErrorCode CoupleShortDestroy(CoupleShort *sr)
   PetscCall(PetscFree(c->inverse));
   PetscCall(PetscFree(c->beam));
   PetscCall(PetscFree(c->joint));
+  PetscCall(PetscFree2(c->attached, c->bodyof));
   PetscCall(PetscFree(c->head));
   PetscCall(PetscFree(c->pair));
   if (c->e) {

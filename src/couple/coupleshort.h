@@ -35,11 +35,17 @@ typedef struct {
   PetscReal c[3], r;
 } ShortLink;
 
-/* Nodes of two beams in one place: joined. */
+/* Nodes of two beams in one place: joined; or on one body, `gap` apart. */
 typedef struct {
-  PetscInt a, b; /* beams, a < b */
-  PetscReal sa, sb;
+  PetscInt a, b; /* beams, a < b, or a = b of one that has both on a body */
+  PetscReal sa, sb, gap;
 } ShortJoint;
+
+/* A beam attached to a body, `depth` inside of it. */
+typedef struct {
+  PetscInt beam, body;
+  PetscReal s, depth, x[3]; /* m; place */
+} ShortAttach;
 
 typedef struct {
   PetscReal x[3], n[3];
@@ -58,10 +64,13 @@ struct _p_CoupleShort {
   ShortRange p;
   PetscInt persample; /* samples per diameter */
   PetscReal period[3], reach;
+  CoupleAttach attach;       /* or NULL */
+  PetscInt nattach, *bodyof; /* attachments of a body: bodyof[body] to bodyof[body + 1] - 1 */
+  ShortAttach *attached;
   PetscInt nwalls;
   ShortWall wall[6];
   PetscBool setup, active;
-  PetscInt nbeams, nnodes, nsamples, nlinks, nbodies, njoints, ninverses;
+  PetscInt nbeams, nnodes, nsamples, nlinks, nbodies, njoints, ajoints, ninverses;
   ShortBeam *beam;
   ShortLink *link;
   ShortJoint *joint;
