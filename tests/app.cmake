@@ -50,7 +50,7 @@ foreach(fine "" "_fine")
   if(fine)
     list(APPEND words --fine)
   else()
-    list(APPEND words flag_csm lumped_static water_plate dam_plate) # the others, longer, in gallery_fine
+    list(APPEND words sprung_cylinder flag_csm lumped_static water_plate dam_plate) # the others, longer, in gallery_fine
   endif()
   add_test(NAME gallery${fine} COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${FROND_TEST_PYTHON} ${words})
 endforeach()
