@@ -70,7 +70,7 @@ class Gallery:
     def number(self, what, ours, reference, bound, source, scale=None, demand=None):
         """ours beside reference; bound is on |ours - reference|/scale (default |reference|) and fails the case; demand, when
         given, is what we set out to reach and did not: the page says so."""
-        error = (ours - reference) / abs(scale if scale else reference)
+        error = (ours - reference) / (scale or reference)
         self.rows.append((what, "%.6g" % ours, "%.6g" % reference, "%+.2f %%" % (100 * error), "%.3g %%" % (100 * (demand or bound)),
                           "yes" if abs(error) <= (demand or bound) else "**no**", source))
         self._judge(abs(error) <= bound, what, "%.6g, reference %.6g, %+.2f %% (bound %.3g %%)" % (ours, reference, 100 * error, 100 * bound))
