@@ -1,5 +1,8 @@
 /* test_ancf_ts.c - Jacobians of both forms, every TS type, conservation, continuation across calls, errors. */
 #include "ancf_common.h"
+#if defined(_OPENMP)
+  #include <omp.h>
+#endif
 
 static PetscErrorCode RandomState(Ancf a, PetscReal size)
 {
@@ -518,6 +521,46 @@ static PetscErrorCode TestGroups(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Enough beams to be shared out: the same bits for 1, 2 and 3 threads. */
+static PetscErrorCode TestThreads(const char options[])
+{
+  const PetscReal g[3] = {0, 0, -9.81};
+  const PetscInt nbeams = 9 * 64 + 5;
+  PetscReal *x[3];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    const PetscReal *p[3];
+    PetscInt n = 0;
+    Ancf a;
+
+#if defined(_OPENMP)
+    omp_set_num_threads(k + 1);
+#endif
+    PetscCall(AncfCreate(PETSC_COMM_SELF, &a));
+    for (PetscInt b = 0; b < nbeams; b++) {
+      AncfBeamSpec s;
+
+      PetscCall(SeedSpec(1 + b % 3, &s));
+      s.start[1] = s.end[1] = 0.1 * (PetscReal)b;
+      s.end[0] = 1 + 0.1 * (PetscReal)(b % 7);
+      PetscCall(AncfAddBeam(a, &s, NULL));
+      n += 6 * (s.elements + 1);
+    }
+    PetscCall(AncfSetGravity(a, g));
+    PetscCall(SetUpWith(a, options, NULL));
+    for (int i = 1; i <= 5; i++) PetscCall(AncfAdvance(a, 1e-3 * i));
+    PetscCall(AncfGetState(a, NULL, &p[0], &p[1], &p[2]));
+    PetscCall(PetscMalloc1(3 * n, &x[k]));
+    for (int q = 0; q < 3; q++) PetscCall(PetscArraycpy(x[k] + q * n, p[q], n));
+    TEST(!memcmp(x[k], x[0], sizeof(PetscReal) * 3 * (size_t)n), "%s: %d threads give other bits than one", options, k + 1);
+    TEST(x[k][n - 4] < 0, "%s: the last beam does not fall", options);
+    PetscCall(AncfDestroy(&a));
+  }
+  for (int k = 0; k < 3; k++) PetscCall(PetscFree(x[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A tube weighs and bends like the difference of two rods, and displaces fluid like its outer diameter. */
 static PetscErrorCode TestAnnulus(void)
 {
@@ -798,6 +841,9 @@ int main(int argc, char **argv)
   PetscCall(TestDamping("-ancf_ts_type theta"));
   PetscCall(TestDamping("-ancf_ts_type rk -ancf_substeps 4"));
   PetscCall(TestInnerSupport());
+  PetscCall(TestThreads("-ancf_ts_type alpha2"));
+  PetscCall(TestThreads("-ancf_ts_type alpha2 -ancf_damping_stiffness 0.01"));
+  PetscCall(TestThreads("-ancf_ts_type rk -ancf_substeps 5"));
   PetscCall(TestAnnulus());
   PetscCall(TestGroups());
   PetscCall(TestBadInput());

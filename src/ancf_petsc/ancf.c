@@ -223,7 +223,7 @@ PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping)
 
 /*
   AncfSetGroupNodes - beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in
-  cache (default 1000). A set of fewer than twice as many nodes is one group, and so is any set whose TS was asked for by
+  cache (default 16000). A set of fewer than twice as many nodes is one group, and so is any set whose TS was asked for by
   AncfGetTS() before AncfSetUp().
 */
 PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes)

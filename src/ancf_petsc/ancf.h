@@ -138,7 +138,7 @@ FROND_EXTERN PetscErrorCode AncfSetDamping(Ancf ancf, PetscReal damping);
 FROND_EXTERN PetscErrorCode AncfSetStiffnessDamping(Ancf ancf, PetscReal damping);
 /*
   Beams are integrated in groups of about this many nodes, so that the vectors of a group's TS stay in cache; before
-  AncfSetUp(). nodes: >= 1, default 1000.
+  AncfSetUp(). nodes: >= 1, default 16000.
 */
 FROND_EXTERN PetscErrorCode AncfSetGroupNodes(Ancf ancf, PetscInt nodes);
 /* Read -ancf_... and the options of TS, SNES, KSP and PC under that prefix. */

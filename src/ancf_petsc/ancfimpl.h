@@ -67,6 +67,11 @@ typedef struct {
   PetscReal EA[ANCF_LANES], EI[ANCF_LANES], rhoA[ANCF_LANES], l[ANCF_LANES];
 } AncfLaneBeams;
 
+/* Nodes [begin, end). */
+typedef struct {
+  PetscInt begin, end;
+} AncfNodes;
+
 struct _p_Ancf {
   MPI_Comm comm;
   char *prefix;
@@ -134,6 +139,10 @@ struct _p_Ancf {
   PetscBool fused, stored;                /* stages are made by ancfstage.c; backup holds the start of the coming step */
   const PetscReal *e0, *v0;               /* fused: start of the step */
   PetscReal *stagex, *stagev, *stagea;    /* fused: arguments of the equations of motion; stagev NULL without damping */
+  PetscReal *stagesum, stagenorm;         /* sums of squares of the batches' residuals; norm of the last one, < 0: unknown */
+  PetscReal *piece;                       /* sums over pieces of the vectors of TS */
+  Vec stageat;                            /* the unknown that these arguments belong to */
+  PetscBool lasting;                      /* the coordinates given to AncfAssemble() stay until they are used */
   PetscReal nominal;                      /* step of a TS that does not adapt, s; 0: it adapts */
   PetscBool given;                        /* history was set by the user */
   PetscBool restart, priming;             /* TS must start afresh; AncfAlphaStart() is at work */
@@ -151,8 +160,9 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 #define ANCF_DEFAULT_AXIAL 3
 #define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
-#define ANCF_MAX_HALVES 14      /* of a step that Newton's method fails in */
-#define ANCF_DEFAULT_GROUP 1000 /* nodes; 1 kB each in the vectors of TSALPHA2: fits a level-2 cache */
+#define ANCF_PARALLEL 64   /* batches of beams, from which on they are shared out among threads */
+#define ANCF_MAX_HALVES 14 /* of a step that Newton's method fails in */
+#define ANCF_DEFAULT_GROUP 16000
 
 #if defined(PETSC_UNLIMITED)
   #define ANCF_UNLIMITED PETSC_UNLIMITED
@@ -237,6 +247,9 @@ extern PetscErrorCode AncfPrefixTS(Ancf ancf);
 extern PetscInt AncfFindBeam(Ancf ancf, PetscInt node);
 
 /* ancfresidual.c */
+/* The nodes of a batch of beams, in as few pieces as it takes; returns how many. */
+extern int AncfBatchNodes(const AncfLaneBeams *b, AncfNodes nodes[ANCF_LANES]);
+extern void AncfMotionBatch(Ancf ancf, PetscInt k, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscReal *f);
 /* M (a + damping v) + internal damping + Q^e - Q^g - Q^a, the forces of joints handed on to free coordinates; identity rows. */
 extern PetscErrorCode AncfFreeResidual(Ancf ancf, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscInt stride,
                                        PetscReal *f, PetscInt fstride); /* the same without any constraint */

@@ -15,7 +15,8 @@ typedef PetscErrorCodeFn *AncfOperation;
 /* The unassembled matrix: MATSHELL that produces its blocks for PCBLOCKTRI. */
 typedef struct {
   Ancf ancf;
-  PetscReal *e, shift, diag; /* linearised here; shift of M; diagonal of eliminated coordinates */
+  PetscReal *e, shift, diag; /* room for coordinates; shift of M; diagonal of eliminated coordinates */
+  const PetscReal *at;       /* linearised here: e, or an array that lasts as long */
   PetscReal *v, *spin, gv;   /* internal damping: velocities, spin, shift of its dQ/dv */
   PetscBool identity;        /* diag times the identity, nothing else */
   PetscInt *first, *length;  /* chains of the source */
@@ -155,7 +156,8 @@ PetscErrorCode AncfAssemble(Ancf ancf, const PetscReal *e, const PetscReal *v, P
     AncfShell *s;
 
     PetscCall(MatShellGetContext(P, &s));
-    PetscCall(PetscArraycpy(s->e, e, 6 * ancf->nnodes));
+    s->at = ancf->lasting ? e : s->e;
+    if (!ancf->lasting) PetscCall(PetscArraycpy(s->e, e, 6 * ancf->nnodes));
     s->shift = shift;
     s->diag = diag;
     s->identity = PETSC_FALSE;
@@ -285,7 +287,7 @@ static void ShellMoments(const AncfShell *s, const PetscInt chain[ANCF_LANES], P
       PetscReal Q[3], dQ[9];
 
       if (!M || (M[0] == 0 && M[1] == 0 && M[2] == 0)) continue;
-      AncfMomentForce(M, s->e + 6 * j + 3, Q, dQ);
+      AncfMomentForce(M, s->at + 6 * j + 3, Q, dQ);
       for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
           D[36 * k + 6 * (3 + r) + 3 + c][i] -= 0.5 * s->ancf->loadscale * (dQ[3 * r + c] + dQ[3 * c + r]);
@@ -338,12 +340,12 @@ static void ShellFill(void *ctx, const PetscInt chain[ANCF_LANES], PetscInt nrow
   }
   for (int c = 0; c < 36; c++) D[c] = zero;
   ShellMass(fullmass, full.l, m);
-  AncfGatherLane(s->ancf, &b, 0, s->e, 6, s->ancf->rest, e);
+  AncfGatherLane(s->ancf, &b, 0, s->at, 6, s->ancf->rest, e);
   for (PetscInt k = 0; k + 1 < nrows; k++) {
     AncfSection sec = full;
     AncfLanes Q[12], K[ANCF_TANGENT];
 
-    AncfGatherLane(s->ancf, &b, k + 1, s->e, 6, s->ancf->rest, e + 6);
+    AncfGatherLane(s->ancf, &b, k + 1, s->at, 6, s->ancf->rest, e + 6);
     if (k >= b.least) {
       AncfLanes mass = fullmass;
 
@@ -385,7 +387,7 @@ static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
     AncfLanes e[12], Q[12], K[ANCF_TANGENT], H[81];
     PetscReal k[144];
 
-    AncfGather(ancf, b, s->e, 6, ancf->rest, e);
+    AncfGather(ancf, b, s->at, 6, ancf->rest, e);
     AncfElementTangent(&ancf->rule, &sec, e, Q, K);
     if (ancf->natural) AncfRestTangent(ancf, b->node, &sec, e, K);
     if (s->v) AncfViscousBatch(ancf, b, s->spin, e, s->v, 6, 1, s->gv, H);
@@ -402,7 +404,7 @@ static PetscErrorCode ShellMult(Mat A, Vec X, Vec Y)
   for (PetscInt j = 0; j < ancf->nnodes && ancf->moment && !s->identity; j++) {
     PetscReal Q[3], dQ[9];
 
-    AncfMomentForce(ancf->moment + 3 * j, s->e + 6 * j + 3, Q, dQ);
+    AncfMomentForce(ancf->moment + 3 * j, s->at + 6 * j + 3, Q, dQ);
     for (int r = 0; r < 9; r++) y[6 * j + 3 + r / 3] -= ancf->loadscale * dQ[r] * x[6 * j + 3 + r % 3];
   }
   for (PetscInt j = 0; j < ancf->nnodes; j++)

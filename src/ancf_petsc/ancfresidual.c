@@ -92,39 +92,81 @@ static void ResidualBeams(Ancf ancf, const AncfLaneBeams *b, const PetscReal *e,
   }
 }
 
-PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
-                            PetscInt fstride)
+/* f = -(loads) of nodes [j0, j1). */
+static void Loads(const Ancf ancf, PetscInt j0, PetscInt j1, PetscReal *f, PetscInt fstride)
 {
   const PetscReal scale = ancf->loadscale, *PETSC_RESTRICT steady = ancf->steady, *PETSC_RESTRICT load = ancf->load;
   PetscReal *PETSC_RESTRICT r = f;
 
-  PetscFunctionBegin;
-  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
-  for (PetscInt j = 0; j < ancf->nnodes; j++)
+  for (PetscInt j = j0; j < j1; j++)
     ANCF_UNROLL for (PetscInt c = 0; c < 6; c++) r[j * fstride + c] = -scale * (steady[6 * j + c] + load[6 * j + c]);
-  if (ancf->loadnow != 0)
-    for (PetscInt j = 0; j < ancf->nnodes; j++)
-      for (PetscInt c = 0; c < 6; c++)
-        f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
-  if (ancf->lanebeams)
-    for (PetscInt k = 0; k < ancf->nlanebeams; k++) ResidualBeams(ancf, &ancf->lanebeams[k], e, stride, a, astride, f, fstride);
-  else
-    ResidualElements(ancf, e, stride, a, astride, f, fstride);
-  for (PetscInt j = 0; j < ancf->nnodes && ancf->moment; j++) {
+  if (ancf->loadnow == 0) return;
+  for (PetscInt j = j0; j < j1; j++)
+    for (PetscInt c = 0; c < 6; c++)
+      f[j * fstride + c] -= scale * ancf->loadnow * (ancf->loadend[6 * j + c] - ancf->load[6 * j + c]);
+}
+
+static void Moments(const Ancf ancf, PetscInt j0, PetscInt j1, const PetscReal *e, PetscInt stride, PetscReal *f,
+                    PetscInt fstride)
+{
+  for (PetscInt j = j0; j < j1 && ancf->moment; j++) {
     const PetscReal *M = ancf->moment + 3 * j;
     PetscReal Q[3];
 
     if (M[0] == 0 && M[1] == 0 && M[2] == 0) continue;
     AncfMomentForce(M, ancf->fixed[j] & ANCF_FIX_GRADIENT ? ancf->rest + 6 * j + 3 : e + j * stride + 3, Q, NULL);
-    for (int c = 0; c < 3; c++) f[j * fstride + 3 + c] -= scale * Q[c];
+    for (int c = 0; c < 3; c++) f[j * fstride + 3 + c] -= ancf->loadscale * Q[c];
+  }
+}
+
+int AncfBatchNodes(const AncfLaneBeams *b, AncfNodes nodes[ANCF_LANES])
+{
+  int n = 0;
+
+  for (int i = 0; i < ANCF_LANES; i++) {
+    if (b->first[i] < 0) continue;
+    if (n && nodes[n - 1].end == b->first[i])
+      n--;
+    else
+      nodes[n].begin = b->first[i];
+    nodes[n++].end = b->first[i] + b->elements[i] + 1;
+  }
+  return n;
+}
+
+/* The residual of the beams of batch k, a row of their own each: batches can go to different threads. */
+static void ResidualBatch(Ancf ancf, PetscInt k, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride,
+                          PetscReal *f, PetscInt fstride)
+{
+  AncfNodes nodes[ANCF_LANES];
+  const int n = AncfBatchNodes(&ancf->lanebeams[k], nodes);
+
+  for (int i = 0; i < n; i++) Loads(ancf, nodes[i].begin, nodes[i].end, f, fstride);
+  ResidualBeams(ancf, &ancf->lanebeams[k], e, stride, a, astride, f, fstride);
+  for (int i = 0; i < n; i++) Moments(ancf, nodes[i].begin, nodes[i].end, e, stride, f, fstride);
+}
+
+PetscErrorCode AncfResidual(Ancf ancf, const PetscReal *e, PetscInt stride, const PetscReal *a, PetscInt astride, PetscReal *f,
+                            PetscInt fstride)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
+  if (ancf->lanebeams) {
+#pragma omp parallel for schedule(static) if (ancf->nlanebeams >= ANCF_PARALLEL)
+    for (PetscInt k = 0; k < ancf->nlanebeams; k++) ResidualBatch(ancf, k, e, stride, a, astride, f, fstride);
+  } else {
+    Loads(ancf, 0, ancf->nnodes, f, fstride);
+    ResidualElements(ancf, e, stride, a, astride, f, fstride);
+    Moments(ancf, 0, ancf->nnodes, e, stride, f, fstride);
   }
   PetscCall(PetscLogEventEnd(ANCF_Force, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
+static void FixRows(const Ancf ancf, PetscInt j0, PetscInt j1, const PetscReal *x, PetscInt stride, PetscReal *f,
+                    PetscInt fstride)
 {
-  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+  for (PetscInt j = j0; j < j1; j++) {
     const unsigned char fix = ancf->fixed[j];
 
     if (PetscLikely(!fix)) continue;
@@ -133,6 +175,27 @@ void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, P
 
       if (fix & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT)) f[j * fstride + c] = x ? x[j * stride + c] - a : a;
     }
+  }
+}
+
+void AncfFixRows(Ancf ancf, const PetscReal *x, PetscInt stride, PetscReal *f, PetscInt fstride)
+{
+  FixRows(ancf, 0, ancf->nnodes, x, stride, f, fstride);
+}
+
+/* AncfMotionResidual() of the beams of batch k, without joints and internal damping; arrays are nodes x 6. */
+void AncfMotionBatch(Ancf ancf, PetscInt k, const PetscReal *e, const PetscReal *v, const PetscReal *a, PetscReal *f)
+{
+  const PetscReal *m = ancf->damping == 0 ? a : ancf->damped;
+  AncfNodes nodes[ANCF_LANES];
+  const int n = AncfBatchNodes(&ancf->lanebeams[k], nodes);
+
+  for (int r = 0; r < n && ancf->damping != 0; r++)
+    for (PetscInt i = 6 * nodes[r].begin; i < 6 * nodes[r].end; i++) ancf->damped[i] = a[i] + ancf->damping * v[i];
+  ResidualBatch(ancf, k, e, 6, m, 6, f, 6);
+  for (int r = 0; r < n; r++) {
+    for (PetscInt i = 6 * nodes[r].begin; i < 6 * nodes[r].end && ancf->stage; i++) ancf->stage[i] = f[i];
+    FixRows(ancf, nodes[r].begin, nodes[r].end, a, 6, f, 6);
   }
 }
 

@@ -25,25 +25,58 @@ static PetscErrorCode GetAlpha(Ancf ancf, Alpha *p, PetscBool *own)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The arguments at x, into stagex, stagev (NULL: nothing asks for velocities) and stagea. */
-static void Arguments(const Ancf ancf, const Alpha *p, const PetscReal *PETSC_RESTRICT x)
+/* The arguments at x for some nodes, into stagex, stagev (NULL: nothing asks for velocities) and stagea. */
+static void Arguments(const Ancf ancf, const Alpha *p, AncfNodes nodes, const PetscReal *PETSC_RESTRICT x)
 {
-  const PetscInt n = 6 * ancf->nnodes;
   const PetscReal *PETSC_RESTRICT x0 = ancf->e0, *PETSC_RESTRICT v0 = ancf->v0, *PETSC_RESTRICT a0 = ancf->history;
   PetscReal *PETSC_RESTRICT xa = ancf->stagex, *PETSC_RESTRICT va = ancf->stagev, *PETSC_RESTRICT aa = ancf->stagea;
   const PetscReal dt = p->dt, kd = 1 / (dt * dt * p->beta), ka = (1 - 2 * p->beta) / (2 * p->beta), af = p->af, am = p->am;
 
-  for (PetscInt i = 0; i < n; i++) {
+  for (PetscInt i = 6 * nodes.begin; i < 6 * nodes.end; i++) {
     const PetscReal d = x[i] - x0[i], a = kd * (d - dt * v0[i]) - ka * a0[i];
 
     xa[i] = x0[i] + af * d;
     aa[i] = a0[i] + am * (a - a0[i]);
   }
-  for (PetscInt i = 0; i < n && va; i++) {
+  for (PetscInt i = 6 * nodes.begin; i < 6 * nodes.end && va; i++) {
     const PetscReal a = kd * (x[i] - x0[i] - dt * v0[i]) - ka * a0[i];
 
     va[i] = v0[i] + af * dt * ((1 - p->gamma) * a0[i] + p->gamma * a);
   }
+}
+
+/* Residual of batch k, from the arguments to the sum of squares while all of it is in cache. */
+static void StageBatch(Ancf ancf, const Alpha *p, PetscInt k, const PetscReal *x, PetscReal *f)
+{
+  const PetscReal scale = 1 / p->af;
+  AncfNodes nodes[ANCF_LANES];
+  const int n = AncfBatchNodes(&ancf->lanebeams[k], nodes);
+  PetscReal sum[6] = {0};
+
+  for (int r = 0; r < n; r++) Arguments(ancf, p, nodes[r], x);
+  AncfMotionBatch(ancf, k, ancf->stagex, ancf->stagev, ancf->stagea, f);
+  for (int r = 0; r < n; r++)
+    for (PetscInt i = 6 * nodes[r].begin; i < 6 * nodes[r].end; i += 6)
+      for (int c = 0; c < 6; c++) {
+        f[i + c] *= scale;
+        sum[c] += f[i + c] * f[i + c];
+      }
+  ancf->stagesum[k] = sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5];
+}
+
+/* All batches, on all threads; the norm is summed in their order, whatever the threads. */
+static PetscErrorCode StageBatches(Ancf ancf, const Alpha *p, const PetscReal *x, PetscReal *f)
+{
+  PetscReal sum = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ANCF_Force, 0, 0, 0, 0));
+#pragma omp parallel for schedule(static) if (ancf->nlanebeams >= ANCF_PARALLEL)
+  for (PetscInt k = 0; k < ancf->nlanebeams; k++) StageBatch(ancf, p, k, x, f);
+  for (PetscInt k = 0; k < ancf->nlanebeams; k++) sum += ancf->stagesum[k];
+  ancf->stagenorm = PetscSqrtReal(sum);
+  PetscCall(PetscLogEventEnd(ANCF_Force, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode StageFunction(SNES snes, Vec X, Vec F, void *ctx)
@@ -56,6 +89,8 @@ static PetscErrorCode StageFunction(SNES snes, Vec X, Vec F, void *ctx)
 
   PetscFunctionBegin;
   PetscCall(GetAlpha(ancf, &p, &own));
+  ancf->stagenorm = -1;
+  ancf->stageat = NULL;
   if (!own) {
     PetscCall(SNESTSFormFunction(snes, X, F, ancf->ts));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -64,11 +99,36 @@ static PetscErrorCode StageFunction(SNES snes, Vec X, Vec F, void *ctx)
   AncfMoveStage(ancf, ancf->stagetime);
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(F, &f));
-  Arguments(ancf, &p, x);
-  PetscCall(AncfMotionResidual(ancf, ancf->stagex, ancf->stagev, ancf->stagea, 6, f, 6));
-  for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) f[i] *= 1 / p.af;
+  if (ancf->stagesum)
+    PetscCall(StageBatches(ancf, &p, x, f));
+  else {
+    Arguments(ancf, &p, (AncfNodes){0, ancf->nnodes}, x);
+    PetscCall(AncfMotionResidual(ancf, ancf->stagex, ancf->stagev, ancf->stagea, 6, f, 6));
+    for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) f[i] *= 1 / p.af;
+  }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
+  ancf->stageat = X;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  Newton's method with full steps: the matrix follows a residual at the same x, and no residual comes between it and the solution
+  with it, so that both can have the same arguments.
+*/
+static PetscErrorCode Lasting(SNES snes, PetscBool *lasting)
+{
+  SNESLineSearch search;
+  PetscBool full;
+  PetscInt lag;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)snes, SNESNEWTONLS, lasting));
+  if (!*lasting) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetLineSearch(snes, &search));
+  PetscCall(PetscObjectTypeCompare((PetscObject)search, SNESLINESEARCHSHELL, &full));
+  PetscCall(SNESGetLagJacobian(snes, &lag));
+  *lasting = (PetscBool)(full && lag == 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,7 +137,7 @@ static PetscErrorCode StageJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   Ancf ancf = (Ancf)ctx;
   const PetscScalar *x;
   PetscReal shiftv, shifta;
-  PetscBool own = PETSC_FALSE;
+  PetscBool own = PETSC_FALSE, lasting = PETSC_FALSE;
   Alpha p;
 
   PetscFunctionBegin;
@@ -88,10 +148,16 @@ static PetscErrorCode StageJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   }
   shiftv = p.gamma / (p.dt * p.beta);
   shifta = p.am / (p.af * p.dt * p.dt * p.beta);
-  PetscCall(VecGetArrayRead(X, &x));
-  Arguments(ancf, &p, x);
-  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(Lasting(snes, &lasting));
+  if (J != P) lasting = PETSC_FALSE; /* products by differences of residuals */
+  if (!lasting || X != ancf->stageat) {
+    PetscCall(VecGetArrayRead(X, &x));
+    Arguments(ancf, &p, (AncfNodes){0, ancf->nnodes}, x);
+    PetscCall(VecRestoreArrayRead(X, &x));
+  }
+  ancf->lasting = lasting;
   PetscCall(AncfAssemble(ancf, ancf->stagex, ancf->stagev, 6, shifta + ancf->damping * shiftv, shiftv, shifta, J, P));
+  ancf->lasting = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,6 +172,7 @@ PetscErrorCode AncfStageSetUp(Ancf ancf)
   if (!ancf->fused) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(n, &ancf->stagex, n, &ancf->stagea));
   if (ancf->viscous || ancf->damping != 0) PetscCall(PetscMalloc1(n, &ancf->stagev));
+  if (ancf->lanebeams && !ancf->viscous) PetscCall(PetscMalloc1(ancf->nlanebeams, &ancf->stagesum));
   PetscCall(TSGetSNES(ancf->ts, &snes));
   PetscCall(SNESSetFunction(snes, NULL, StageFunction, ancf));
   PetscCall(SNESSetJacobian(snes, ancf->J, ancf->J, StageJacobian, ancf));
@@ -117,6 +184,7 @@ PetscErrorCode AncfStageDestroy(Ancf ancf)
   PetscFunctionBegin;
   PetscCall(PetscFree2(ancf->stagex, ancf->stagea));
   PetscCall(PetscFree(ancf->stagev));
+  PetscCall(PetscFree(ancf->stagesum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,6 +215,7 @@ PetscErrorCode AncfStagePostStep(Ancf ancf)
   PetscCall(GetAlpha(ancf, &p, &own));
   kd = 1 / (p.dt * p.dt * p.beta);
   ka = (1 - 2 * p.beta) / (2 * p.beta);
+#pragma omp parallel for schedule(static) if (ancf->nlanebeams >= ANCF_PARALLEL)
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++) {
     const PetscReal a1 = kd * (x[i] - x0[i] - p.dt * v0[i]) - ka * a[i];
 

@@ -303,9 +303,9 @@ static PetscReal AncfNorm(PetscInt n, const PetscReal *x)
   return PetscSqrtReal(s[0] + s[1] + s[2] + s[3] + s[4] + s[5]);
 }
 
-/* x -= lambda y, and both norms. */
-static void Update(PetscInt n, PetscReal lambda, PetscReal *PETSC_RESTRICT x, const PetscReal *PETSC_RESTRICT y, PetscReal *xnorm,
-                   PetscReal *ynorm)
+/* Sums of squares of x -= lambda y and of y over a piece of them. */
+static void UpdatePiece(PetscInt n, PetscReal lambda, PetscReal *PETSC_RESTRICT x, const PetscReal *PETSC_RESTRICT y,
+                        PetscReal sum[2])
 {
   PetscReal s[6] = {0}, r[6] = {0};
   PetscInt i;
@@ -321,8 +321,27 @@ static void Update(PetscInt n, PetscReal lambda, PetscReal *PETSC_RESTRICT x, co
     s[0] += x[i] * x[i];
     r[0] += y[i] * y[i];
   }
-  *xnorm = PetscSqrtReal(s[0] + s[1] + s[2] + s[3] + s[4] + s[5]);
-  *ynorm = PetscSqrtReal(r[0] + r[1] + r[2] + r[3] + r[4] + r[5]);
+  sum[0] = s[0] + s[1] + s[2] + s[3] + s[4] + s[5];
+  sum[1] = r[0] + r[1] + r[2] + r[3] + r[4] + r[5];
+}
+
+/* x -= lambda y and both norms, in pieces whose sums are added in their order, whatever the threads. */
+#define ANCF_PIECE 1536
+static void Update(Ancf ancf, PetscInt n, PetscReal lambda, PetscReal *x, const PetscReal *y, PetscReal *xnorm, PetscReal *ynorm)
+{
+  const PetscInt pieces = (n + ANCF_PIECE - 1) / ANCF_PIECE;
+  PetscReal sum[2] = {0};
+
+#pragma omp parallel for schedule(static) if (ancf->nlanebeams >= ANCF_PARALLEL)
+  for (PetscInt k = 0; k < pieces; k++) {
+    const PetscInt i = ANCF_PIECE * k;
+
+    UpdatePiece(PetscMin(ANCF_PIECE, n - i), lambda, x + i, y + i, ancf->piece + 2 * k);
+  }
+  for (PetscInt k = 0; k < pieces; k++)
+    for (int q = 0; q < 2; q++) sum[q] += ancf->piece[2 * k + q];
+  *xnorm = PetscSqrtReal(sum[0]);
+  *ynorm = PetscSqrtReal(sum[1]);
 }
 
 /*
@@ -337,24 +356,45 @@ static PetscErrorCode AncfFullStep(SNESLineSearch search, void *ctx)
   PetscInt n;
   Vec X, F, Y;
   SNES snes;
+  Ancf ancf = (Ancf)ctx;
 
   PetscFunctionBegin;
-  (void)ctx;
   PetscCall(SNESLineSearchGetVecs(search, &X, &F, &Y, NULL, NULL));
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
   PetscCall(VecGetLocalSize(X, &n));
   PetscCall(VecGetArray(X, &x));
   PetscCall(VecGetArrayRead(Y, &y));
-  Update(n, lambda, x, y, &xnorm, &ynorm);
+  Update(ancf, n, lambda, x, y, &xnorm, &ynorm);
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscCall(VecRestoreArray(X, &x));
+  ancf->stagenorm = -1;
   PetscCall(SNESComputeFunction(snes, X, F));
   PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_SUCCEEDED)); /* SNES itself looks for a NaN in the norm */
-  PetscCall(VecGetArrayRead(F, &y));
-  fnorm = AncfNorm(n, y);
-  PetscCall(VecRestoreArrayRead(F, &y));
+  fnorm = ancf->stagenorm;
+  if (!(fnorm >= 0)) {
+    PetscCall(VecGetArrayRead(F, &y));
+    fnorm = AncfNorm(n, y);
+    PetscCall(VecRestoreArrayRead(F, &y));
+  }
   PetscCall(SNESLineSearchSetNorms(search, xnorm, fnorm, ynorm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nothing happens to line searches of other types. */
+static PetscErrorCode AncfSetFullStep(Ancf ancf)
+{
+  SNESLineSearch search;
+  SNES snes;
+
+  PetscFunctionBegin;
+  PetscCall(TSGetSNES(ancf->ts, &snes));
+  PetscCall(SNESGetLineSearch(snes, &search));
+#if PETSC_VERSION_LT(3, 21, 0)
+  PetscCall(SNESLineSearchShellSetUserFunc(search, AncfFullStep, ancf));
+#else
+  PetscCall(SNESLineSearchShellSetApply(search, AncfFullStep, ancf));
+#endif
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -384,11 +424,7 @@ PetscErrorCode AncfTSCreate(Ancf ancf)
   PetscCall(SNESSetForceIteration(snes, PETSC_TRUE)); /* the floor of AncfSetNewtonFloor() must not swallow small loads */
   PetscCall(SNESGetLineSearch(snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
-#if PETSC_VERSION_LT(3, 21, 0)
-  PetscCall(SNESLineSearchShellSetUserFunc(search, AncfFullStep, NULL));
-#else
-  PetscCall(SNESLineSearchShellSetApply(search, AncfFullStep, NULL));
-#endif
+  PetscCall(AncfSetFullStep(ancf));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -402,6 +438,7 @@ PetscErrorCode AncfTSDestroy(Ancf ancf)
   PetscCall(PetscFree(ancf->backup));
   PetscCall(PetscFree(ancf->damped));
   PetscCall(AncfStageDestroy(ancf));
+  PetscCall(PetscFree(ancf->piece));
   if (!ancf->whole) PetscCall(PetscFree3(ancf->history, ancf->eprev, ancf->vprev));
   PetscCall(VecDestroy(&ancf->U));
   PetscCall(VecDestroy(&ancf->V));
@@ -506,6 +543,8 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(AncfChooseForm(ancf));
   PetscCall(AncfChooseARKIMEX(ancf));
   PetscCall(AncfDaeSetUp(ancf));
+  PetscCall(PetscMalloc1(2 * ((2 * (size_t)n + (size_t)ancf->nmult) / ANCF_PIECE + 1), &ancf->piece));
+  if (ancf->whole) PetscCall(AncfSetFullStep(ancf)); /* the first group's TS was made for the whole set */
   PetscCheck(ancf->damping == 0 || ancf->form != ANCF_FORM_SYMPLECTIC, ancf->comm, PETSC_ERR_ARG_INCOMP,
              "-ancf_damping %g needs another -ancf_ts_type than basicsymplectic, which takes no velocities",
              (double)ancf->damping);
