@@ -9,7 +9,7 @@ install(FILES src/frondsys.h src/frondstate.h src/sph_cuda/sph.h src/sph_cuda/sp
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/frond)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/frond/examples
-  FILES_MATCHING PATTERN "*.yaml" PATTERN "*.obj" PATTERN "plot_run.py" PATTERN "python_tutorial.py" PATTERN "host_*" PATTERN "out_*" EXCLUDE)
+  FILES_MATCHING PATTERN "*.yaml" PATTERN "*.obj" PATTERN "plot_*.py" PATTERN "make_suspension.py" PATTERN "python_tutorial.py" PATTERN "host_*" PATTERN "out_*" EXCLUDE)
 install(FILES python/frond.py DESTINATION ${CMAKE_INSTALL_DATADIR}/frond/python)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Frond)

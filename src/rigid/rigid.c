@@ -504,19 +504,34 @@ PetscErrorCode RigidAddLoad(Rigid rigid, PetscInt body, const PetscReal F[3], co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Short-range wrenches of a half step, and their mean so far. */
+static PetscErrorCode ShortRangeKick(Rigid rigid, PetscReal h)
+{
+  const PetscReal part = .5 / (PetscReal)rigid->substeps;
+
+  PetscFunctionBegin;
+  PetscCall(RigidContactForces(rigid, .5 * h));
+  for (PetscInt i = 0; i < rigid->n; i++)
+    for (int k = 0; k < 3; k++) {
+      rigid->body[i].Fm[k] += part * rigid->body[i].Fs[k];
+      rigid->body[i].Tm[k] += part * rigid->body[i].Ts[k];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Kick, free flight, kick of all bodies; the short-range forces of each kick are those at its end of the flight. */
 static PetscErrorCode RigidSubstep(Rigid rigid, PetscReal h)
 {
   PetscBool jointed;
 
   PetscFunctionBegin;
-  if (rigid->contact) PetscCall(RigidContactForces(rigid, .5 * h));
+  if (rigid->contact) PetscCall(ShortRangeKick(rigid, h));
   for (PetscInt i = 0; i < rigid->n; i++) {
     PetscCall(RigidSystemHasBody(rigid, i, &jointed));
     if (!jointed) PetscCall(RigidBodyBegin(rigid, i, h));
   }
   if (rigid->system) PetscCall(RigidSystemBegin(rigid, h));
-  if (rigid->contact) PetscCall(RigidContactForces(rigid, .5 * h));
+  if (rigid->contact) PetscCall(ShortRangeKick(rigid, h));
   for (PetscInt i = 0; i < rigid->n; i++) {
     PetscCall(RigidSystemHasBody(rigid, i, &jointed));
     if (!jointed) RigidBodyEnd(rigid, i, h);
@@ -536,7 +551,14 @@ PetscErrorCode RigidAdvance(Rigid rigid, PetscReal t)
   PetscCheck(dt >= 0. && !PetscIsInfOrNanReal(t), rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "RigidAdvance() to t = %g s: must be >= the present time %g s", (double)t, (double)rigid->t);
   PetscCall(PetscLogEventBegin(RIGID_Advance, 0, 0, 0, 0));
+  for (PetscInt i = 0; i < rigid->n; i++)
+    for (int k = 0; k < 3; k++) rigid->body[i].Fm[k] = rigid->body[i].Tm[k] = 0.;
   for (PetscInt s = 0; s < rigid->substeps && dt > 0.; s++) PetscCall(RigidSubstep(rigid, dt / (PetscReal)rigid->substeps));
+  for (PetscInt i = 0; i < rigid->n && rigid->contact && dt > 0.; i++)
+    for (int k = 0; k < 3; k++) { /* the last half step's gives way to the mean, so that m A dt is the step's impulse */
+      rigid->body[i].Fused[k] += rigid->body[i].Fm[k] - rigid->body[i].Fs[k];
+      rigid->body[i].Tused[k] += rigid->body[i].Tm[k] - rigid->body[i].Ts[k];
+    }
   rigid->t = t;
   rigid->advanced = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(RIGID_Advance, 0, 0, 0, 0));

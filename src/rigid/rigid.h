@@ -169,9 +169,9 @@ FROND_EXTERN PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[]);
 /* Time and the packed state as named arrays, see frondstate.h. state: saved to or loaded from. */
 FROND_EXTERN PetscErrorCode RigidMoveState(Rigid rigid, FrondState *state);
 /*
-  From all wrenches of the last step: applied, weight, short-range and joints (before the first one, from the loads collected
-  so far); of a prescribed body, the slope of its table. Each output may be NULL. body: number. A: 3, m/s^2. alpha: 3, space
-  frame, rad/s^2.
+  From all wrenches of the last step: applied, weight, short-range (their mean over it) and joints (before the first one, from the
+  loads collected so far); of a prescribed body, the slope of its table. Each output may be NULL. body: number. A: 3, m/s^2.
+  alpha: 3, space frame, rad/s^2.
 */
 FROND_EXTERN PetscErrorCode RigidGetAcceleration(Rigid rigid, PetscInt body, PetscReal A[3], PetscReal alpha[3]);
 /* q: 4, unit quaternion. R: 9, row major, space = R body. Source: the paper, Eq. 17. */

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal w[3];         /* prescribed: angular velocity, space frame, rad/s */
   PetscReal F[3], T[3];   /* wrench collected for the next step, N, N m */
   PetscReal Fs[3], Ts[3]; /* short-range wrench of the present half step */
+  PetscReal Fm[3], Tm[3]; /* mean of it over the half steps of RigidAdvance() */
   PetscReal Fused[3], Tused[3]; /* all wrenches of the last step but gravity's */
   PetscReal load[3], moment[3]; /* permanent, N, N m */
   PetscReal g[3];               /* own gravity, m/s^2 */
