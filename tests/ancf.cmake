@@ -4,6 +4,7 @@ frond_test(test_ancf_damping SOURCES test_ancf_damping.c LIBS frond_ancf LABELS 
 frond_test(test_ancf_rest SOURCES test_ancf_rest.c LIBS frond_ancf LABELS validation TIMEOUT 60)
 frond_test(test_ancf_locking SOURCES test_ancf_locking.c LABELS validation TIMEOUT 120)
 frond_test(test_ancf_ts SOURCES test_ancf_ts.c LIBS OpenMP::OpenMP_C LABELS unit TIMEOUT 120)
+frond_test(test_ancf_types SOURCES test_ancf_types.c LABELS unit TIMEOUT 60)
 frond_test(test_ancf_adapt SOURCES test_ancf_adapt.c LABELS validation TIMEOUT 120)
 frond_test(test_ancf_swing SOURCES test_ancf_swing.c LABELS validation TIMEOUT 300)
 frond_test(test_ancf_validation SOURCES test_ancf_validation.c LABELS validation TIMEOUT 120)

@@ -259,7 +259,9 @@ extern PetscErrorCode AncfMotionResidual(Ancf ancf, const PetscReal *e, const Pe
 /* ancfts.c: Push and Pull copy the state into and out of the vectors of TS; Push makes TS restart. */
 extern PetscErrorCode AncfTSCreate(Ancf ancf);
 extern PetscErrorCode AncfTSDestroy(Ancf ancf);
+/* ancftype.c */
 extern PetscErrorCode AncfChooseForm(Ancf ancf);
+extern PetscErrorCode AncfCheckVariant(Ancf ancf);
 extern PetscErrorCode AncfTSSetUp(Ancf ancf);
 extern PetscErrorCode AncfTSPush(Ancf ancf);
 extern PetscErrorCode AncfTSPull(Ancf ancf);

@@ -1,31 +1,7 @@
 /*
-  ancfts.c - the equations of motion (ancfresidual.c) as TS callbacks, and the choice and set-up of TS.
+  ancfts.c - the equations of motion (ancfresidual.c) as TS callbacks, and the set-up of TS; its type: ancftype.c.
 */
 #include "ancfimpl.h"
-
-/*
-  Which form each TS type takes; anything else is refused. The last column: nothing is carried from step to step but the state
-  and, by TSALPHA2, the acceleration.
-*/
-static const struct {
-  const char *type;
-  AncfForm form;
-  PetscBool exact;
-} ancf_types[] = {
-    {TSALPHA2, ANCF_FORM_SECOND, PETSC_TRUE},
-    {TSBEULER, ANCF_FORM_FIRST, PETSC_TRUE},
-    {TSCN, ANCF_FORM_FIRST, PETSC_TRUE},
-    {TSTHETA, ANCF_FORM_FIRST, PETSC_FALSE},
-    {TSBDF, ANCF_FORM_FIRST, PETSC_FALSE},
-    {TSALPHA, ANCF_FORM_FIRST, PETSC_FALSE},
-    {TSARKIMEX, ANCF_FORM_FIRST, PETSC_FALSE},
-    {"dirk", ANCF_FORM_FIRST, PETSC_FALSE},
-    {TSROSW, ANCF_FORM_FIRST, PETSC_FALSE},
-    {TSEULER, ANCF_FORM_EXPLICIT, PETSC_TRUE},
-    {TSRK, ANCF_FORM_EXPLICIT, PETSC_FALSE},
-    {TSSSP, ANCF_FORM_EXPLICIT, PETSC_FALSE},
-    {TSBASICSYMPLECTIC, ANCF_FORM_SYMPLECTIC, PETSC_TRUE},
-};
 
 /* F = M a + C v + Q^e - Q^g - Q^a */
 static PetscErrorCode AncfI2Function(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
@@ -471,62 +447,6 @@ static PetscErrorCode AncfSetUpSymplectic(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AncfChooseForm(Ancf ancf)
-{
-  TSType type;
-  TSAdapt adapt;
-  PetscBool fixedstep;
-  const size_t n = sizeof(ancf_types) / sizeof(ancf_types[0]);
-  size_t k;
-  char list[256] = "";
-
-  PetscFunctionBegin;
-  PetscCall(TSGetType(ancf->ts, &type));
-  for (k = 0; k < n; k++) {
-    PetscBool match;
-
-    PetscCall(PetscStrcmp(type, ancf_types[k].type, &match));
-    if (match) break;
-    PetscCall(PetscStrlcat(list, " ", sizeof(list)));
-    PetscCall(PetscStrlcat(list, ancf_types[k].type, sizeof(list)));
-  }
-  PetscCheck(k < n, ancf->comm, PETSC_ERR_ARG_WRONG, "-ancf_ts_type %s cannot integrate beams; use one of:%s", type, list);
-  PetscCall(TSGetAdapt(ancf->ts, &adapt));
-  PetscCall(PetscObjectTypeCompare((PetscObject)adapt, TSADAPTNONE, &fixedstep));
-  ancf->form = ancf_types[k].form;
-  ancf->exact = (PetscBool)(ancf_types[k].exact && fixedstep);
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)ancf->ts, &ancf->interpolates, TSALPHA2, TSTHETA, ""));
-  for (PetscInt j = 0; j < ancf->njoints; j++) ancf->exact = (PetscBool)(ancf->exact && ancf->joints[j].linear);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*
-  TSARKIMEX accepts a mass matrix other than the identity only in tableaux without an explicit first stage; l2 (L-stable,
-  second order) is our default among them.
-*/
-static PetscErrorCode AncfChooseARKIMEX(Ancf ancf)
-{
-  const char *const fit[] = {TSARKIMEXL2, TSARKIMEX1BEE, TSARKIMEXPRSSP2};
-  TSARKIMEXType type;
-  const char *prefix;
-  PetscBool is, given;
-
-  PetscFunctionBegin;
-  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSARKIMEX, &is));
-  if (!is) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TSARKIMEXGetType(ancf->ts, &type));
-  for (int k = 0; k < 3; k++) {
-    PetscCall(PetscStrcmp(type, fit[k], &is));
-    if (is) PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(TSGetOptionsPrefix(ancf->ts, &prefix));
-  PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_arkimex_type", &given));
-  PetscCheck(!given, ancf->comm, PETSC_ERR_ARG_WRONG,
-             "-ancf_ts_arkimex_type %s cannot take the mass matrix of beams; use one of: l2 1bee prssp2", type);
-  PetscCall(TSARKIMEXSetType(ancf->ts, TSARKIMEXL2));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode AncfTSSetUp(Ancf ancf)
 {
   const PetscInt n = 6 * ancf->nnodes;
@@ -541,7 +461,7 @@ PetscErrorCode AncfTSSetUp(Ancf ancf)
   PetscCall(TSSetPreStage(ancf->ts, AncfPreStage));
   PetscCall(TSSetPostStep(ancf->ts, AncfPostStep));
   PetscCall(AncfChooseForm(ancf));
-  PetscCall(AncfChooseARKIMEX(ancf));
+  PetscCall(AncfCheckVariant(ancf));
   PetscCall(AncfDaeSetUp(ancf));
   PetscCall(PetscMalloc1(2 * ((2 * (size_t)n + (size_t)ancf->nmult) / ANCF_PIECE + 1), &ancf->piece));
   if (ancf->whole) PetscCall(AncfSetFullStep(ancf)); /* the first group's TS was made for the whole set */
