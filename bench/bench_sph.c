@@ -12,8 +12,10 @@
 
     bench_sph                                   the table at 203 k markers
     bench_sph -sizes 0.013,0.008,0.0049,0.00315 -full
-    bench_sph -fill 0.0027                      time to fill, sort and set up only
-    bench_sph -sph_kernel cubic -one            one run with any -sph_ option
+    bench_sph -flat -sizes 0.013,0.008,0.0049,0.00315
+                                                cost against size: the dam break, where the share of dry wall markers, which see
+  no neighbour, falls with dp, and a periodic box of the same number of fluid markers bench_sph -fill 0.0027 time to fill, sort
+  and set up only bench_sph -sph_kernel cubic -one            one run with any -sph_ option
 */
 #include "sph_cuda/sph.h"
 #include <math.h>
@@ -30,6 +32,7 @@ typedef struct {
   SphIntegratorType integrator;
   SphPrecision precision;
   int threads;
+  PetscInt box; /* instead of the dam break: markers along each side of a periodic box of moving fluid */
 } Case;
 
 typedef struct {
@@ -89,16 +92,55 @@ static double Peak(void)
   return getrusage(RUSAGE_SELF, &u) ? 0.0 : 1024.0 * (double)u.ru_maxrss;
 }
 
+/* Markers along each axis of the dam break: of the tank less one, and of the fluid. */
+static void Lattice(PetscReal dp, PetscInt n[3], PetscInt f[3])
+{
+  n[0] = (PetscInt)floor(1.6 / dp + 0.5);
+  n[1] = (PetscInt)floor(0.67 / dp + 0.5);
+  n[2] = (PetscInt)floor(0.4 / dp + 1e-9) - 1;
+  f[0] = (PetscInt)floor(0.4 / dp + 0.5);
+  f[1] = n[1] - 1;
+  f[2] = (PetscInt)floor(0.3 / dp + 0.5);
+}
+
+/* Nodes p of [1,f] with p + o in [lo,hi], all axes. */
+static double Overlap(const PetscInt f[3], const PetscInt lo[3], const PetscInt hi[3], const PetscInt o[3])
+{
+  double m = 1.0;
+  for (int k = 0; k < 3; k++) m *= (double)PetscMax(0, PetscMin(f[k], hi[k] - o[k]) - PetscMax(1, lo[k] - o[k]) + 1);
+  return m;
+}
+
+/* Neighbours per marker on the lattice of the dam break, within 2h = sqrt(12) dp: fluid has all, walls have fluid only. */
+static PetscReal Neighbours(PetscReal dp)
+{
+  const PetscInt zero[3] = {0, 0, 0}, one[3] = {1, 1, 1};
+  PetscInt n[3], f[3], inner[3], whole[3];
+  double pairs = 0.0, markers;
+
+  Lattice(dp, n, f);
+  for (int k = 0; k < 3; k++) {
+    inner[k] = k < 2 ? n[k] - 1 : n[k];
+    whole[k] = n[k] + 1;
+  }
+  markers = Overlap(f, one, f, zero) + Overlap(whole, one, whole, zero) - Overlap(inner, one, inner, zero);
+  for (PetscInt a = 0; a < 343; a++) {
+    const PetscInt o[3] = {a % 7 - 3, a / 7 % 7 - 3, a / 49 - 3}, r2 = o[0] * o[0] + o[1] * o[1] + o[2] * o[2];
+    if (r2 && r2 < 12) pairs += Overlap(f, one, f, o) + 2.0 * (Overlap(f, zero, n, o) - Overlap(f, one, inner, o));
+  }
+  return pairs / markers;
+}
+
 /* Nodes i dp: walls on the planes x = 0, y = 0, z = 0 and at the far ends; fluid at 0.01 dp off them never, a full dp away. */
 static PetscErrorCode AddMarkers(Sph sph, PetscReal dp)
 {
-  const PetscInt n[3] = {(PetscInt)floor(1.6 / dp + 0.5), (PetscInt)floor(0.67 / dp + 0.5), (PetscInt)floor(0.4 / dp + 1e-9) - 1};
-  const PetscInt f[3] = {(PetscInt)floor(0.4 / dp + 0.5), n[1] - 1, (PetscInt)floor(0.3 / dp + 0.5)};
-  const PetscInt nf = f[0] * f[1] * f[2], nw = (n[0] + 1) * (n[1] + 1) * (n[2] + 1) - (n[0] - 1) * (n[1] - 1) * n[2];
   PetscReal *x, *p, *vol, *depth;
-  PetscInt m = 0, group;
+  PetscInt m = 0, group, n[3], f[3], nf, nw;
 
   PetscFunctionBegin;
+  Lattice(dp, n, f);
+  nf = f[0] * f[1] * f[2];
+  nw = (n[0] + 1) * (n[1] + 1) * (n[2] + 1) - (n[0] - 1) * (n[1] - 1) * n[2];
   PetscCall(PetscMalloc4(3 * (size_t)PetscMax(nf, nw), &x, nf, &p, nw, &vol, nw, &depth));
   for (PetscInt k = 1; k <= f[2]; k++)
     for (PetscInt j = 1; j <= f[1]; j++)
@@ -125,9 +167,33 @@ static PetscErrorCode AddMarkers(Sph sph, PetscReal dp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A lattice of m^3 fluid markers in a shear flow of up to 1.7 m/s, so that re-sorting takes part as in a dam break under way. */
+static PetscErrorCode AddBox(Sph sph, PetscReal dp, PetscInt m)
+{
+  PetscReal *x, *v;
+  PetscInt at = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(3 * (size_t)(m * m * m), &x, 3 * (size_t)(m * m * m), &v));
+  for (PetscInt k = 0; k < m; k++)
+    for (PetscInt j = 0; j < m; j++)
+      for (PetscInt i = 0; i < m; i++, at += 3) {
+        const PetscInt node[3] = {i, j, k};
+        for (int d = 0; d < 3; d++) {
+          x[at + d] = ((PetscReal)node[d] + 0.5) * dp;
+          v[at + d] = sin(2.0 * PETSC_PI * ((PetscReal)node[(d + 1) % 3] + 0.5) / (PetscReal)m);
+        }
+      }
+  PetscCall(SphAddFluid(sph, m * m * m, x, v, NULL));
+  PetscCall(PetscFree2(x, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Make(const Case *c, Sph *out)
 {
-  const PetscReal lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.6, 0.67, 0.6}, g[3] = {0.0, 0.0, -9.81};
+  const PetscReal side = (PetscReal)c->box * c->dp, lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.6, 0.67, 0.6},
+                  cube[3] = {side, side, side}, g[3] = {0.0, 0.0, c->box ? 0.0 : -9.81};
+  const PetscBool periodic[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
   Sph sph;
 
   PetscFunctionBegin;
@@ -146,10 +212,14 @@ static PetscErrorCode Make(const Case *c, Sph *out)
   PetscCall(SphSetIntegrator(sph, c->integrator));
   PetscCall(SphSetPrecision(sph, c->precision));
   PetscCall(SphSetBodyForce(sph, g));
-  PetscCall(SphSetDomain(sph, lo, hi));
+  PetscCall(SphSetDomain(sph, lo, c->box ? cube : hi));
+  if (c->box) PetscCall(SphSetPeriodic(sph, periodic));
   PetscCall(SphSetCheckEvery(sph, 100));
   PetscCall(SphSetFromOptions(sph));
-  PetscCall(AddMarkers(sph, c->dp));
+  if (c->box)
+    PetscCall(AddBox(sph, c->dp, c->box));
+  else
+    PetscCall(AddMarkers(sph, c->dp));
   PetscCall(SphSetUp(sph));
   *out = sph;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -215,12 +285,43 @@ static PetscErrorCode Row(const Case *c, PetscInt warm, PetscInt steps, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Cost against size, by processor time; ratios are those of the time per marker (and per neighbour) to that of the first size. */
+static PetscErrorCode Flat(Case c, const PetscReal *sizes, PetscInt nsizes, PetscInt warm, PetscInt steps, PetscInt reps)
+{
+  PetscReal dam0 = 0.0, pair0 = 0.0, box0 = 0.0;
+
+  PetscFunctionBegin;
+  printf(" thr  dam markers   M/s  cost  neighbours  M neighbours/s  cost   box markers   M/s  cost\n");
+  for (PetscInt s = 0; s < nsizes; s++) {
+    Result dam, box;
+    PetscReal pairs;
+    c.dp = sizes[s];
+    c.box = 0;
+    PetscCall(Run(&c, warm, steps, reps, &dam));
+    dam.cpu *= c.threads;
+    pairs = dam.cpu * Neighbours(c.dp);
+    c.box = (PetscInt)floor(cbrt((double)dam.n) + 0.5);
+    PetscCall(Run(&c, warm, steps, reps, &box));
+    box.cpu *= c.threads;
+    if (s == 0) {
+      dam0 = dam.cpu;
+      pair0 = pairs;
+      box0 = box.cpu;
+    }
+    printf("%4d %12" PetscInt_FMT " %5.3f %5.2f %11.1f %15.0f %5.2f %13" PetscInt_FMT " %5.3f %5.2f\n", c.threads, dam.n,
+           dam.cpu * 1e-6, dam0 / dam.cpu, Neighbours(c.dp), pairs * 1e-6, pair0 / pairs, box.n, box.cpu * 1e-6, box0 / box.cpu);
+    fflush(stdout);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   PetscReal sizes[16] = {0.008}, fill = 0.0;
   PetscInt nsizes = 16, warm = 10, steps = 10, reps = 5;
-  PetscBool full = PETSC_FALSE, one = PETSC_FALSE, set;
-  Case c = {0.008, SPH_KERNEL_WENDLAND, SPH_DIFFUSION_NONE, SPH_INTEGRATOR_VERLET, SPH_PRECISION_SINGLE, omp_get_max_threads()};
+  PetscBool full = PETSC_FALSE, one = PETSC_FALSE, flat = PETSC_FALSE, set;
+  Case c = {0.008, SPH_KERNEL_WENDLAND, SPH_DIFFUSION_NONE, SPH_INTEGRATOR_VERLET, SPH_PRECISION_SINGLE, omp_get_max_threads(),
+            0};
   Result r;
 
   PetscFunctionBeginUser;
@@ -233,6 +334,12 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-full", &full, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-one", &one, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-fill", &fill, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-flat", &flat, NULL));
+  if (flat) {
+    PetscCall(Flat(c, sizes, nsizes, warm, steps, reps));
+    PetscCall(PetscFinalize());
+    return 0;
+  }
   if (fill > 0.0) {
     c.dp = fill;
     PetscCall(Run(&c, 0, 0, 0, &r));
