@@ -214,8 +214,8 @@ def damaged():
         bad = bytearray(good)
         bad[bit // 8] ^= 1 << (bit % 8)
         refused(bytes(bad), ["damaged|no checkpoint|newer|older"], "bit %d" % bit)
-    refused(good.replace(b"frond-checkpoint 2", b"frond-checkpoint 3", 1), ["format 3", "newer", "reads format 2"], "newer")
-    refused(good.replace(b"frond-checkpoint 2", b"frond-checkpoint 1", 1), ["format 1", "older", "reads format 2"], "older")
+    refused(good.replace(b"frond-checkpoint 3", b"frond-checkpoint 4", 1), ["format 4", "newer", "reads format 3"], "newer")
+    refused(good.replace(b"frond-checkpoint 3", b"frond-checkpoint 2", 1), ["format 2", "older", "reads format 3"], "older")
     refused(open(frond.path("four", "frame_00000.h5"), "rb").read(), ["no checkpoint"], "a frame")
     refused(b"%PDF-1.4 something else" * 100, ["no checkpoint"], "another program's file")
     with open(last, "wb") as f:

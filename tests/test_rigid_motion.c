@@ -392,7 +392,7 @@ static PetscErrorCode TopError(PetscReal dt, PetscReal *rms, PetscReal *turned)
 {
   Rigid r;
   RigidBodySpec s;
-  PetscReal y[3] = {TOP_TILT, 0., 0.}, sum = 0., state[RIGID_PACK_SIZE], q[4], R[9], T[3];
+  PetscReal y[3] = {TOP_TILT, 0., 0.}, sum = 0., state[RIGID_PACK_SIZE + RIGID_LEDGER_SIZE], q[4], R[9], T[3];
   const PetscReal L3 = TOP_C * TOP_SPIN, pphi = L3 * cos(TOP_TILT);
   const int steps = (int)(6. / dt + .5), sub = 20;
 
@@ -506,7 +506,7 @@ static PetscErrorCode TestOtherMotions(void)
   Rigid r;
   RigidBodySpec s;
   const PetscReal F[3] = {1., 2., 3.}, g[3] = {0., -9.81, 0.};
-  PetscReal X[3], q[4], V[3], w[3], a[3 * RIGID_PACK_SIZE], b[3 * RIGID_PACK_SIZE];
+  PetscReal X[3], q[4], V[3], w[3], a[3 * RIGID_PACK_SIZE + RIGID_LEDGER_SIZE], b[3 * RIGID_PACK_SIZE + RIGID_LEDGER_SIZE];
 
   PetscFunctionBegin;
   PetscCall(Begin(&r, &s));
@@ -536,7 +536,8 @@ static PetscErrorCode TestOtherMotions(void)
   PetscCall(RigidSetTime(r, 50 * .02));
   for (int n = 51; n <= 60; n++) PetscCall(RigidAdvance(r, n * .02));
   PetscCall(RigidPack(r, a));
-  for (int k = 0; k < 3 * RIGID_PACK_SIZE; k++) TEST(a[k] == b[k], "restart differs at %d: %.17g %.17g", k, a[k], b[k]);
+  for (int k = 0; k < 3 * RIGID_PACK_SIZE + RIGID_LEDGER_SIZE; k++)
+    TEST(a[k] == b[k], "restart differs at %d: %.17g %.17g", k, a[k], b[k]);
   PetscCall(RigidDestroy(&r));
 
   PetscCall(Begin(&r, &s));

@@ -249,6 +249,8 @@ FROND_EXTERN PetscErrorCode AncfGetPackExact(Ancf ancf, PetscBool *exact);
 FROND_EXTERN PetscErrorCode AncfUnpack(Ancf ancf, const PetscReal state[]);
 /* The packed state and the counts of steps and iterations as named arrays, see frondstate.h. state: saved to or loaded from. */
 FROND_EXTERN PetscErrorCode AncfMoveState(Ancf ancf, FrondState *state);
+/* The counts alone, for a state that holds the packed beams elsewhere (CoupleMoveState()). state: saved to or loaded from. */
+FROND_EXTERN PetscErrorCode AncfMoveCounts(Ancf ancf, FrondState *state);
 /*
   For checkpoints of an own making: the acceleration that alpha2 carries from step to step. Without it alpha2 starts from the
   acceleration of the equations of motion. A: nodes x 6, borrowed; NULL for other types.
@@ -296,6 +298,11 @@ FROND_EXTERN PetscErrorCode AncfGetMeanReactions(Ancf ancf, PetscReal *offset, P
   supports and joints. All beams x 3. p: kg m/s. L: kg m^2/s. F: N. T: N m.
 */
 FROND_EXTERN PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscReal L[], PetscReal F[], PetscReal T[]);
+/*
+  Torque about the origin now of weight, permanent loads, moments, damping of the mass and supports; with that of the loads of
+  AncfGetLoads() it is the rate of L of AncfGetMomentum(). T: 3, N m.
+*/
+FROND_EXTERN PetscErrorCode AncfGetTorque(Ancf ancf, PetscReal T[3]);
 /* As AncfGetNodeReaction() for all nodes at once. f: nodes x 6, N and N m, 0 where there is no support. */
 FROND_EXTERN PetscErrorCode AncfGetReactions(Ancf ancf, PetscReal f[]);
 /* f: 3, force of all supports on the beams, N: the residual of the equations of motion over supported positions. */

@@ -180,6 +180,28 @@ PetscErrorCode AncfGetBeamBalances(Ancf ancf, PetscReal p[], PetscReal L[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfGetTorque(Ancf ancf, PetscReal T[3])
+{
+  PetscReal *f, *r, F[3];
+
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetTorque: call AncfSetUp() first");
+  PetscCall(PetscMalloc2(6 * (size_t)ancf->nnodes, &f, 6 * (size_t)ancf->nnodes, &r));
+  PetscCall(AncfMassMult(ancf, ancf->v, f));
+  PetscCall(AncfGetReactions(ancf, r));
+  for (PetscInt j = 0; j < ancf->nnodes; j++) {
+    PetscReal Q[3] = {0};
+
+    if (ancf->moment) AncfMomentForce(ancf->moment + 3 * j, ancf->e + 6 * j + 3, Q, NULL);
+    for (PetscInt c = 0; c < 6; c++)
+      f[6 * j + c] = ancf->steady[6 * j + c] + r[6 * j + c] - ancf->damping * f[6 * j + c] + (c < 3 ? 0 : Q[c - 3]);
+  }
+  for (int c = 0; c < 3; c++) F[c] = T[c] = 0;
+  for (PetscInt b = 0; b < ancf->nbeams; b++) BeamTotals(&ancf->beams[b], ancf->e, f, F, T);
+  PetscCall(PetscFree2(f, r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Residual of the full equations of motion, constraints ignored, summed over the fixed positions. */
 PetscErrorCode AncfGetReaction(Ancf ancf, PetscReal f[3])
 {

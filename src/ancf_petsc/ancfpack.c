@@ -109,6 +109,14 @@ static PetscErrorCode MoveCounts(Ancf ancf, FrondState *s, PetscInt k)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AncfMoveCounts(Ancf ancf, FrondState *s)
+{
+  PetscFunctionBegin;
+  PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfMoveCounts: call AncfSetUp() first");
+  for (PetscInt k = 0; k < PetscMax(1, ancf->ngroups); k++) PetscCall(MoveCounts(ancf->ngroups ? ancf->groups[k] : ancf, s, k));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AncfMoveState(Ancf ancf, FrondState *s)
 {
   PetscReal *x = NULL;
@@ -121,6 +129,6 @@ PetscErrorCode AncfMoveState(Ancf ancf, FrondState *s)
   FrondMoveReal(s, "beams/state", x, n);
   if (s->way == FROND_STATE_LOAD) PetscCall(AncfUnpack(ancf, x));
   PetscCall(PetscFree(x));
-  for (PetscInt k = 0; k < PetscMax(1, ancf->ngroups); k++) PetscCall(MoveCounts(ancf->ngroups ? ancf->groups[k] : ancf, s, k));
+  PetscCall(AncfMoveCounts(ancf, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

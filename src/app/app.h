@@ -198,6 +198,8 @@ typedef struct {
   PetscReal loadramp, loadtime; /* when all beams have all of their loads, s; time of those that they have */
   PetscReal t;                  /* time, s */
   PetscInt step;
+  PetscReal beamtorque[3],
+      beamturn[3]; /* of weight and supports now, N m; its impulse since the first row of the history, N m s */
 } App;
 PetscErrorCode AppBuild(App *app);
 PetscErrorCode AppView(const App *app, FILE *out);
@@ -236,7 +238,7 @@ PetscErrorCode AppStateDestroy(AppState *s);
 PetscErrorCode AppMoveState(App *app, FrondState *s);
 
 /* checkpoint.c: checkpoint files. */
-#define APP_CHECKPOINT_FORMAT 2
+#define APP_CHECKPOINT_FORMAT 3
 typedef struct {
   PetscInt step;
   PetscReal t;   /* s */
@@ -402,10 +404,15 @@ typedef struct {
   PetscReal rate[AUDIT_INTEGRALS], integral[AUDIT_INTEGRALS];   /* W, J; torque of the body force N m, N m s */
   PetscReal mass, energy[AUDIT_TERMS], angular[3];              /* at the first row: kg, J, kg m^2/s */
   PetscReal pressure, L[3], work[SURFACE_KINDS];                /* W; kg m^2/s now; J of the fluid on the surfaces */
+  PetscReal freework, freeturn[3], beamturn[3];                 /* of the fluid on free bodies J, N m s; on beams N m s */
+  RigidAudit bodies;                                            /* now, and so are these: */
+  CoupleExchange links, near;                                   /* beams and bodies by attachments, by short-range forces */
+  PetscReal L0[2][3], part[2][3], partturn[2][3];               /* of beams, bodies: at the first row, now, residual; kg m^2/s */
   PetscReal residual[AUDIT_TERMS], scale[AUDIT_TERMS], turn[3]; /* kg, kg m/s, J, J, J; the largest term; kg m^2/s */
   PetscReal worst[AUDIT_TERMS], warned[AUDIT_TERMS];            /* largest residual over scale; whether it was said */
 } AppAudit;
 PetscErrorCode AppAuditUpdate(App *app, AppAudit *audit);
+PetscErrorCode AppAuditStep(App *app, PetscReal dt);
 
 /* sceneprobe.c, appgrid.c: grids in the frames, probes in the history. */
 typedef PetscErrorCode (*AppPut)(AppHistory h, const char name[], const char unit[], const char description[], PetscReal value);

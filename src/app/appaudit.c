@@ -4,9 +4,11 @@
   Energies of fluid, beams and bodies are balanced one by one, so that a residual tells where it arises:
     fluid   kinetic + compression - work of the body force + viscous heat + work on all surfaces
     beams   kinetic + elastic + potential - work of the fluid + energy that damping took - work of moments at their ends
-    bodies  kinetic + potential + springs of joints - work of the fluid
-  each less its value at the first row. Works of the fluid are sums over all steps; heat, body force and damping are sums of
-  trapezoids over the rows. docs/output.md says what the residuals hold.
+            + elastic and taken of short-range forces - work of bodies on beams
+    bodies  kinetic + potential + springs of joints + elastic of contacts + energy that lubrication, contacts and joints took
+            - work of the fluid, of the beams, and of what drives the bodies
+  each less its value at the first row; bodies are the free ones. Works are sums over all steps; heat, body force and damping are
+  sums of trapezoids over the rows. Angular momenta likewise. docs/output.md says what the residuals hold.
 */
 #include "app.h"
 #include <math.h>
@@ -35,14 +37,22 @@ static void set_residual(AppAudit *a, int term, PetscReal residual, PetscInt n, 
 /* What the fluid has done on the surfaces, and the angular impulse on all of them. */
 static PetscErrorCode add_works(App *app, AppAudit *a, PetscReal impulse[3])
 {
+  PetscInt body = 0; /* surfaces of bodies come in the order of the scene's */
+
   PetscFunctionBegin;
   for (int k = 0; k < SURFACE_KINDS; k++) a->work[k] = 0;
-  for (int k = 0; k < 3; k++) impulse[k] = 0;
+  for (int k = 0; k < 3; k++) impulse[k] = a->freeturn[k] = a->beamturn[k] = 0;
+  a->freework = 0;
   for (PetscInt i = 0; i < app->nsurfaces && app->couple; i++) {
     PetscReal work, turn[3];
     PetscCall(CoupleGetWork(app->couple, i, &work, turn));
     a->work[app->surfaces[i].kind] += work;
     for (int k = 0; k < 3; k++) impulse[k] += turn[k];
+    if (app->surfaces[i].kind == SURFACE_BEAM)
+      for (int k = 0; k < 3; k++) a->beamturn[k] += turn[k];
+    if (app->surfaces[i].kind != SURFACE_BODY || app->scene.bodies[body++].spec.motion != RIGID_FREE) continue;
+    a->freework += work;
+    for (int k = 0; k < 3; k++) a->freeturn[k] += turn[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,8 +97,8 @@ static PetscErrorCode fluid_residuals(App *app, AppAudit *a, const SphSums *sums
   PetscFunctionBegin;
   PetscCall(SphGetCounts(app->sph, NULL, NULL, &left));
   if (!(a->rows > 0)) {
-    a->energy[AUDIT_FLUID] = E;
-    PetscCall(PetscArraycpy(a->angular, a->L, 3));
+    a->energy[AUDIT_FLUID] = E + W;
+    for (int k = 0; k < 3; k++) a->angular[k] = a->L[k] + impulse[k];
   }
   if (!(a->rows > 0) || (PetscReal)left != a->left) a->mass = sums->mass; /* markers that leave take their mass along */
   a->left = (PetscReal)left;
@@ -97,56 +107,111 @@ static PetscErrorCode fluid_residuals(App *app, AppAudit *a, const SphSums *sums
   set_residual(a, AUDIT_MASS, sums->mass - a->mass, 1, &sums->mass);
   PetscCall(CoupleGetBalance(app->couple, &balance));
   set_residual(a, AUDIT_MOMENTUM, norm3(balance.residual), 2, (PetscReal[]){balance.scale, small});
-  set_residual(a, AUDIT_FLUID, E - a->energy[AUDIT_FLUID] - got[AUDIT_BODY] + got[AUDIT_HEAT] + W, 6,
+  set_residual(a, AUDIT_FLUID, E + W - a->energy[AUDIT_FLUID] - got[AUDIT_BODY] + got[AUDIT_HEAT], 6,
                (PetscReal[]){sums->kinetic, sums->internal, got[AUDIT_BODY], got[AUDIT_HEAT], W, small * cs / 20});
-  for (int k = 0; k < 3; k++) a->turn[k] = a->L[k] - a->angular[k] - got[AUDIT_TORQUE + k] + impulse[k];
+  for (int k = 0; k < 3; k++) a->turn[k] = a->L[k] + impulse[k] - a->angular[k] - got[AUDIT_TORQUE + k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is in energy[] at the first row is taken off, so that a sum that was not 0 then does no harm. */
+static PetscReal since_start(AppAudit *a, int term, PetscReal sum)
+{
+  if (!(a->rows > 0)) a->energy[term] = sum;
+  return sum - a->energy[term];
+}
+
+static void angular_residual(AppAudit *a, int part, const PetscReal impulse[3])
+{
+  for (int k = 0; k < 3; k++) {
+    if (!(a->rows > 0)) a->L0[part][k] = a->part[part][k] - impulse[k];
+    a->partturn[part][k] = a->part[part][k] - impulse[k] - a->L0[part][k];
+  }
+}
+
+static PetscErrorCode beam_residuals(App *app, AppAudit *a)
+{
+  const PetscReal W = a->work[SURFACE_BEAM], D = a->integral[AUDIT_DAMPING], bodies = a->links.beams + a->near.beams;
+  PetscReal kinetic, elastic, potential, impulse[3];
+
+  PetscFunctionBegin;
+  PetscCall(AncfGetEnergy(app->ancf, &kinetic, &elastic, &potential));
+  set_residual(a, AUDIT_BEAMS,
+               since_start(a, AUDIT_BEAMS, kinetic + elastic + potential + a->near.elastic + a->near.taken - W + D - bodies), 7,
+               (PetscReal[]){kinetic, elastic, W, D, a->near.elastic, a->near.taken, bodies});
+  PetscCall(AncfGetMomentum(app->ancf, NULL, a->part[0]));
+  for (int k = 0; k < 3; k++) impulse[k] = a->beamturn[k] + app->beamturn[k] + a->links.turnbeams[k] + a->near.turnbeams[k];
+  angular_residual(a, 0, impulse);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode body_residuals(App *app, AppAudit *a)
+{
+  const PetscReal W = a->freework, beams = a->links.bodies + a->near.bodies;
+  const RigidAudit *b = &a->bodies;
+  PetscReal springs, potential, impulse[3];
+
+  PetscFunctionBegin;
+  PetscCall(RigidGetAudit(app->rigid, &a->bodies));
+  PetscCall(RigidGetEnergy(app->rigid, NULL, &potential));
+  PetscCall(RigidGetJointEnergy(app->rigid, &springs));
+  set_residual(
+      a, AUDIT_BODIES,
+      since_start(a, AUDIT_BODIES,
+                  b->kinetic + potential + springs + b->contact + b->lubrication + b->impact + b->joints - b->driven - W - beams),
+      9, (PetscReal[]){b->kinetic, springs, b->contact, b->lubrication, b->impact, b->joints, b->driven, W, beams});
+  PetscCall(PetscArraycpy(a->part[1], b->angular, 3));
+  for (int k = 0; k < 3; k++) impulse[k] = a->freeturn[k] + b->turn[k] + a->links.turnbodies[k] + a->near.turnbodies[k];
+  angular_residual(a, 1, impulse);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of weight and supports on the beams; attachments are not among these, as they know their mean over the step. */
+static PetscErrorCode get_torque(App *app, PetscReal T[3])
+{
+  CoupleExchange links;
+
+  PetscFunctionBegin;
+  PetscCall(AncfGetTorque(app->ancf, T));
+  if (!app->attach) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CoupleAttachGetExchange(app->attach, &links));
+  for (int k = 0; k < 3; k++) T[k] -= links.torque[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Angular impulse of weight and supports on the beams in a step: supports vary too fast for sums over the rows. */
+PetscErrorCode AppAuditStep(App *app, PetscReal dt)
+{
+  PetscReal T[3];
+
+  PetscFunctionBegin;
+  if (!app->scene.audit || !app->ancf) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(get_torque(app, T));
+  for (int k = 0; k < 3; k++) {
+    app->beamturn[k] += 0.5 * dt * (app->beamtorque[k] + T[k]);
+    app->beamtorque[k] = T[k];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode structure_residuals(App *app, AppAudit *a)
 {
-  PetscReal kinetic, elastic, potential, E;
-
   PetscFunctionBegin;
-  if (app->ancf) {
-    const PetscReal W = a->work[SURFACE_BEAM], D = a->integral[AUDIT_DAMPING];
-    PetscCall(AncfGetEnergy(app->ancf, &kinetic, &elastic, &potential));
-    E = kinetic + elastic + potential;
-    if (!(a->rows > 0)) a->energy[AUDIT_BEAMS] = E;
-    E -= a->energy[AUDIT_BEAMS];
-    set_residual(a, AUDIT_BEAMS, E - W + D, 4, (PetscReal[]){kinetic, elastic, W, D});
+  if (app->attach) PetscCall(CoupleAttachGetExchange(app->attach, &a->links));
+  if (app->shortrange) PetscCall(CoupleShortGetExchange(app->shortrange, &a->near));
+  if (app->ancf && !(a->rows > 0)) { /* the sum over steps begins here */
+    for (int k = 0; k < 3; k++) app->beamturn[k] = 0;
+    PetscCall(get_torque(app, app->beamtorque));
   }
-  if (app->rigid) {
-    const PetscReal W = a->work[SURFACE_BODY];
-    PetscCall(RigidGetEnergy(app->rigid, &kinetic, &potential));
-    PetscCall(RigidGetJointEnergy(app->rigid, &elastic));
-    E = kinetic + elastic + potential;
-    if (!(a->rows > 0)) a->energy[AUDIT_BODIES] = E;
-    E -= a->energy[AUDIT_BODIES];
-    set_residual(a, AUDIT_BODIES, E - W, 3, (PetscReal[]){kinetic, elastic, W});
-  }
+  if (app->ancf) PetscCall(beam_residuals(app, a));
+  if (app->rigid) PetscCall(body_residuals(app, a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether nothing takes part in this balance that it does not know of. */
-static PetscErrorCode is_closed(App *app, int term, const AppAudit *a, PetscBool *closed)
+/* Markers that leave take momentum and energy along; loads that grow change the potential energy. */
+static PetscBool is_closed(const App *app, int term, const AppAudit *a)
 {
-  static const char *const near[] = {"-rigid_lubrication_viscosity", "-rigid_contact_modulus"};
-  const AppScene *s = &app->scene;
-  PetscBool free = (PetscBool)(s->nlinks == 0), set;
-
-  PetscFunctionBegin;
-  for (size_t k = 0; k < sizeof(near) / sizeof(near[0]); k++) {
-    PetscCall(PetscOptionsHasName(NULL, NULL, near[k], &set));
-    free = (PetscBool)(free && !set);
-  }
-  *closed = PETSC_TRUE;
-  if (term == AUDIT_MOMENTUM || term == AUDIT_FLUID) *closed = (PetscBool)(a->left == 0);
-  if (term == AUDIT_BEAMS) *closed = (PetscBool)(free && app->loadramp == 0);
-  if (term != AUDIT_BODIES) PetscFunctionReturn(PETSC_SUCCESS);
-  *closed = (PetscBool)(free && s->nlumped == 0 && s->njoints == 0);
-  for (PetscInt b = 0; b < s->nbodies; b++) *closed = (PetscBool)(*closed && s->bodies[b].spec.motion != RIGID_PRESCRIBED);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (term == AUDIT_BEAMS) return (PetscBool)(app->loadramp == 0);
+  return (PetscBool)((term != AUDIT_MOMENTUM && term != AUDIT_FLUID) || a->left == 0);
 }
 
 /* Warn, once for each balance; the first rows, whose terms are small differences, are let off. */
@@ -162,12 +227,10 @@ static PetscErrorCode judge(App *app, AppAudit *a)
     const PetscReal limit = k == AUDIT_MASS ? 1e-12 : (k == AUDIT_MOMENTUM ? s->auditmomentum : s->auditenergy);
     const PetscReal part = a->scale[k] > 0 ? PetscAbsReal(a->residual[k]) / a->scale[k] : 0;
     char option[64];
-    PetscBool closed = PETSC_FALSE;
     if (a->rows < 10) continue;
     a->worst[k] = PetscMax(a->worst[k], part);
     if (!(part > limit) || limit < 0 || a->warned[k] != 0) continue;
-    PetscCall(is_closed(app, k, a, &closed));
-    if (!closed) continue;
+    if (!is_closed(app, k, a)) continue;
     a->warned[k] = 1;
     snprintf(option, sizeof(option), options[PetscMin(k, 2)], (double)limit);
     fprintf(stderr,
@@ -195,11 +258,41 @@ PetscErrorCode AppAuditUpdate(App *app, AppAudit *a)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode near_forces(PetscBool *near)
+{
+  PetscBool contact;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-rigid_lubrication_viscosity", near));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-rigid_contact_modulus", &contact));
+  *near = (PetscBool)(*near || contact);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of one part; not about axes that periodic sides turn into each other: what is put back jumps. */
+static PetscErrorCode put_angular(const App *app, const char part[], const PetscReal L[3], const PetscReal residual[3],
+                                  AppPut put, AppHistory h)
+{
+  const char *unit = app->dim == 2 ? "kg m/s" : "kg m^2/s";
+  const PetscBool *periodic = app->scene.periodic;
+  char name[64], what[128];
+
+  PetscFunctionBegin;
+  for (int k = app->dim == 2 ? 2 : 0; k < 3; k++) {
+    if (periodic[(k + 1) % 3] || periodic[(k + 2) % 3]) continue;
+    snprintf(name, sizeof(name), "%s_angular_%c", part, "xyz"[k]);
+    snprintf(what, sizeof(what), "angular momentum of the %s about the origin", part);
+    PetscCall(put(h, name, unit, what, L[k]));
+    snprintf(name, sizeof(name), "%s_angular_residual_%c", part, "xyz"[k]);
+    PetscCall(put(h, name, unit, "that - initial - angular impulses received", residual[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode put_fluid(App *app, const AppAudit *a, AppPut put, AppHistory h)
 {
   const PetscBool flat = (PetscBool)(app->dim == 2);
-  const char *J = flat ? "J/m" : "J", *W = flat ? "W/m" : "W", *L = flat ? "kg m/s" : "kg m^2/s";
-  char name[64];
+  const char *J = flat ? "J/m" : "J", *W = flat ? "W/m" : "W";
 
   PetscFunctionBegin;
   PetscCall(put(h, "fluid_heat", J, "viscous heat since the start", a->integral[AUDIT_HEAT]));
@@ -212,33 +305,63 @@ static PetscErrorCode put_fluid(App *app, const AppAudit *a, AppPut put, AppHist
   PetscCall(put(h, "mass_residual", flat ? "kg/m" : "kg", "mass of the fluid - initial", a->residual[AUDIT_MASS]));
   PetscCall(put(h, "fluid_energy_residual", J, "energy of the fluid - initial - what it received", a->residual[AUDIT_FLUID]));
   PetscCall(put(h, "fluid_energy_scale", J, "largest term of that balance so far", a->scale[AUDIT_FLUID]));
-  for (int k = flat ? 2 : 0; k < 3; k++) {
-    const PetscBool *periodic = app->scene.periodic;
-    if (periodic[(k + 1) % 3] || (periodic[(k + 2) % 3])) continue; /* markers that are put back jump */
-    PetscCall(PetscSNPrintf(name, sizeof(name), "fluid_angular_%c", "xyz"[k]));
-    PetscCall(put(h, name, L, "angular momentum of the fluid about the origin", a->L[k]));
-    PetscCall(PetscSNPrintf(name, sizeof(name), "fluid_angular_residual_%c", "xyz"[k]));
-    PetscCall(put(h, name, L, "that - initial - angular impulses of body force and surfaces", a->turn[k]));
+  PetscCall(put_angular(app, "fluid", a->L, a->turn, put, h));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What contacts, joints and drives do, where there are any. */
+static PetscErrorCode put_bodies(App *app, const AppAudit *a, AppPut put, AppHistory h)
+{
+  const char *J = app->dim == 2 ? "J/m" : "J";
+  const AppScene *s = &app->scene;
+  PetscBool near;
+
+  PetscFunctionBegin;
+  PetscCall(near_forces(&near));
+  if (near) {
+    PetscCall(put(h, "bodies_contact", J, "elastic energy in contacts of bodies", a->bodies.contact));
+    PetscCall(put(h, "bodies_impact", J, "energy that the damping of contacts took since the start", a->bodies.impact));
+    PetscCall(
+        put(h, "bodies_lubrication", J, "energy that lubrication between bodies took since the start", a->bodies.lubrication));
   }
+  if (s->njoints || s->nlumped)
+    PetscCall(
+        put(h, "joints_taken", J, "energy that dampers, yield and rupture of joints took since the start", a->bodies.joints));
+  PetscCall(put(h, "bodies_driven", J, "work of prescribed bodies and permanent torques on free bodies", a->bodies.driven));
+  PetscCall(
+      put(h, "bodies_energy_residual", J, "energy of the free bodies - initial - what they received", a->residual[AUDIT_BODIES]));
+  PetscCall(put_angular(app, "bodies", a->part[1], a->partturn[1], put, h));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode put_beams(App *app, const AppAudit *a, AppPut put, AppHistory h)
+{
+  const char *J = app->dim == 2 ? "J/m" : "J";
+  PetscBool near;
+
+  PetscFunctionBegin;
+  PetscCall(near_forces(&near));
+  PetscCall(put(h, "beams_damped", J, "energy that damping took from the beams, less the work of moments at their ends",
+                a->integral[AUDIT_DAMPING]));
+  if (near) {
+    PetscCall(put(h, "beams_contact", J, "elastic energy in contacts of beams", a->near.elastic));
+    PetscCall(put(h, "beams_near_taken", J, "energy that lubrication and contacts of beams took since the start", a->near.taken));
+  }
+  if (app->rigid)
+    PetscCall(put(h, "beams_from_bodies", J, "work of bodies on beams by links and short-range forces",
+                  a->links.beams + a->near.beams));
+  PetscCall(put(h, "beams_energy_residual", J, "energy of the beams - initial - what they received", a->residual[AUDIT_BEAMS]));
+  PetscCall(put_angular(app, "beams", a->part[0], a->partturn[0], put, h));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The audit's columns. */
 PetscErrorCode AppAuditPut(App *app, const AppAudit *a, AppPut put, AppHistory h)
 {
-  const char *J = app->dim == 2 ? "J/m" : "J";
-
   PetscFunctionBegin;
   if (!app->scene.audit) PetscFunctionReturn(PETSC_SUCCESS);
   if (app->sph) PetscCall(put_fluid(app, a, put, h));
-  if (app->ancf) {
-    PetscCall(put(h, "beams_damped", J, "energy that damping took from the beams, less the work of moments at their ends",
-                  a->integral[AUDIT_DAMPING]));
-    PetscCall(put(h, "beams_energy_residual", J, "energy of the beams - initial - what they received", a->residual[AUDIT_BEAMS]));
-  }
-  if (app->rigid)
-    PetscCall(put(h, "bodies_energy_residual", J,
-                  "energy of the bodies - initial - work of the fluid: of dampers, contacts, prescribed motion",
-                  a->residual[AUDIT_BODIES]));
+  if (app->ancf) PetscCall(put_beams(app, a, put, h));
+  if (app->rigid) PetscCall(put_bodies(app, a, put, h));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -252,6 +252,7 @@ static PetscErrorCode run_steps(Run *run)
     PetscBool done, frame, row;
     PetscCall(AppInjectFault(app));
     PetscCall(AppStep(app, tmax, &run->lastdt));
+    PetscCall(AppAuditStep(app, run->lastdt));
     done = (PetscBool)(app->t >= tend);
     frame = (PetscBool)(done || app->scene.outevery <= 0 || app->t >= run->nextframe);
     row = (PetscBool)(done || app->t >= run->nexthistory * (1 - 1e-12));

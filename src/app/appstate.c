@@ -130,8 +130,12 @@ PetscErrorCode AppMoveState(App *app, FrondState *s)
   FrondMoveReal(s, "run/time", &app->t, 1);
   FrondMoveInt(s, "run/step", &app->step, 1);
   if (app->couple) PetscCall(CoupleMoveState(app->couple, s));
-  if (app->ancf) PetscCall(AncfMoveState(app->ancf, s));
-  if (app->rigid) PetscCall(RigidMoveState(app->rigid, s));
+  /* beams and bodies that are coupled are in the coupling's state; counts of iterations are not */
+  if (app->ancf) PetscCall(app->couple ? AncfMoveCounts(app->ancf, s) : AncfMoveState(app->ancf, s));
+  if (app->rigid && !app->couple) PetscCall(RigidMoveState(app->rigid, s));
   if (app->attach && !app->couple) PetscCall(CoupleAttachMoveState(app->attach, s));
+  if (app->shortrange && !app->couple) PetscCall(CoupleShortMoveState(app->shortrange, s));
+  if (app->ancf) FrondMoveReal(s, "run/beam_torque", app->beamtorque, 3);
+  if (app->ancf) FrondMoveReal(s, "run/beam_turn", app->beamturn, 3);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

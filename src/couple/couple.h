@@ -120,6 +120,19 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char na
                                                     const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3],
                                                     CoupleSurface *surface);
 
+/*
+  What goes to and fro between beams and bodies, see CoupleAttachGetExchange() and CoupleShortGetExchange(). Sums begin at set-up.
+  beams + bodies = 0, but for bodies that are not free and the error of the time integration.
+*/
+typedef struct {
+  PetscReal elastic;       /* energy of the forces between them now, J */
+  PetscReal taken;         /* energy that they turned into heat, J */
+  PetscReal beams, bodies; /* work of the bodies on the beams, and on free bodies, J */
+  PetscReal turnbeams[3];  /* angular impulse about the origin, on the beams, N m s */
+  PetscReal turnbodies[3]; /* on free bodies */
+  PetscReal torque[3];     /* attachments: about the origin, of the reactions now that AncfGetTorque() holds of them, N m */
+} CoupleExchange;
+
 /* Nodes of beams attached to rigid bodies. */
 typedef struct _p_CoupleAttach *CoupleAttach;
 /*
@@ -148,6 +161,8 @@ FROND_EXTERN PetscErrorCode CoupleAttachAdvance(CoupleAttach attach, PetscReal t
 FROND_EXTERN PetscErrorCode CoupleAttachGetNum(CoupleAttach attach, PetscInt *n);
 /* On the beam, mean over the last step; either may be NULL. i: attachment. F: 3, N. M: 3, about the node, N m. */
 FROND_EXTERN PetscErrorCode CoupleAttachGetForce(CoupleAttach attach, PetscInt i, PetscReal F[3], PetscReal M[3]);
+/* Work and angular impulses of the attachments after a step, elastic and taken 0. exchange: to be filled. */
+FROND_EXTERN PetscErrorCode CoupleAttachGetExchange(CoupleAttach attach, CoupleExchange *exchange);
 /* n: iterations made since set-up. */
 FROND_EXTERN PetscErrorCode CoupleAttachGetIterations(CoupleAttach attach, PetscInt *n);
 /* What the attachments remember, see frondstate.h; beams and bodies move their own. state: saved to or loaded from. */
@@ -271,6 +286,13 @@ FROND_EXTERN PetscErrorCode CoupleShortRemove(CoupleShort sr);
 */
 FROND_EXTERN PetscErrorCode CoupleShortGetForces(CoupleShort sr, PetscInt *contacts, PetscReal *gap, PetscReal held[3],
                                                  PetscReal bodies[3]);
+/*
+  Energy in the repulsion now; heat of lubrication and contact; work and angular impulses. Steps taken again from the time of the
+  last CoupleShortApply() count once. sr: the forces. exchange: to be filled.
+*/
+FROND_EXTERN PetscErrorCode CoupleShortGetExchange(CoupleShort sr, CoupleExchange *exchange);
+/* Those sums, see frondstate.h; a coupling moves them with its own. sr: the forces. state: saved to or loaded from. */
+FROND_EXTERN PetscErrorCode CoupleShortMoveState(CoupleShort sr, FrondState *state);
 /* Let a coupling apply them in every step, before its first one. couple: the coupling. sr: kept, not owned; NULL: none. */
 FROND_EXTERN PetscErrorCode CoupleSetShort(Couple couple, CoupleShort sr);
 

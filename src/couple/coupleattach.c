@@ -237,6 +237,24 @@ PetscErrorCode CoupleAttachGetForce(CoupleAttach l, PetscInt i, PetscReal F[3], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CoupleAttachGetExchange(CoupleAttach l, CoupleExchange *exchange)
+{
+  const PetscReal *e;
+
+  PetscFunctionBegin;
+  *exchange = l->done;
+  PetscCall(AncfGetState(l->ancf, NULL, &e, NULL, NULL));
+  for (PetscInt i = 0; i < l->n; i++) {
+    const PetscReal *x = e + 6 * l->a[i].at, *f = l->f1 + 6 * l->a[i].at;
+    PetscReal t[3], m[3];
+
+    CoupleCross(x, f, t);
+    CoupleCross(x + 3, f + 3, m);
+    for (int c = 0; c < 3; c++) exchange->torque[c] += t[c] + m[c];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CoupleAttachGetIterations(CoupleAttach l, PetscInt *n)
 {
   PetscFunctionBegin;
@@ -261,7 +279,7 @@ void CoupleAttachCount(CoupleAttach l, PetscInt *n)
 {
   const PetscInt m = 6 * l->nfree;
 
-  *n = m + m * m + 12 * l->n + 7;
+  *n = m + m * m + 12 * l->n + 7 + (PetscInt)(sizeof(l->done) / sizeof(PetscReal));
 }
 
 static void Swap(PetscBool load, PetscReal **at, PetscReal *x, PetscInt n)
@@ -287,6 +305,7 @@ void CoupleAttachCopy(CoupleAttach l, PetscBool load, PetscReal *state)
     Swap(load, &state, l->a[i].last, 6);
   }
   Swap(load, &state, l->sum[0], 6);
+  Swap(load, &state, (PetscReal *)&l->done, (PetscInt)(sizeof(l->done) / sizeof(PetscReal)));
   Swap(load, &state, &known, 1);
   l->known = known != 0 ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -10,6 +10,7 @@ typedef struct {
   PetscReal place[3], gradient[3]; /* body frame, m and - */
   PetscReal x0[3], x1[3];          /* of the node at the ends of the step, m */
   PetscReal F[3], M[3];            /* on the beam, mean of the last step, N and N m */
+  PetscReal w0[3];                 /* of its body at the start of the step, rad/s */
   PetscReal raw[6], last[6];       /* the same at the integrator's time in this step and the one before */
 } Attachment;
 
@@ -31,6 +32,7 @@ struct _p_CoupleAttach {
   PetscInt *free;                       /* free bodies with attachments */
   PetscReal tolerance, *length, *ratio; /* of a free body: radius of gyration, m; mass of its beams over its own */
   PetscReal *X;                         /* their centres at the start of the step, m */
+  CoupleExchange done;                  /* of all steps */
   PetscReal *W, *B;                     /* 6 nfree wrenches (torque over length), inverse Jacobian of R */
   PetscReal *R, *Rold, *G, *s, *y;      /* 6 nfree each */
   PetscReal *beams, *bodies, *f0, *f1, *f2, *balance;

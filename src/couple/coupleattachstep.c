@@ -312,12 +312,49 @@ static PetscErrorCode Start(CoupleAttach l, PetscReal t, PetscReal *t0, PetscRea
   PetscCall(BeamBalances(l));
   for (PetscInt s = 0; s < l->nsets; s++) PetscCall(Balances(l, s, l->sets[s].balance));
   for (PetscInt k = 0; k < l->nfree; k++) PetscCall(RigidGetState(l->rigid, l->free[k], l->X + 3 * k, NULL, NULL, NULL));
+  for (PetscInt i = 0; i < l->n; i++) PetscCall(RigidGetState(l->rigid, l->a[i].body, NULL, NULL, NULL, l->a[i].w0));
   PetscCall(Floor(l, t - *t0, floor));
   for (PetscInt k = 0; k < l->nfree; k++) ratio = PetscMax(ratio, l->ratio[k]);
   *part = l->tolerance * (1 + ratio); /* an error of R changes the body's motion by 1/(1 + ratio) of it */
   if (l->nfree) {
     PetscCall(AncfPack(l->ancf, l->beams));
     PetscCall(RigidPack(l->rigid, l->bodies));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Work and angular impulse of the step, forces held over it; angles by the mean angular velocity of the step. */
+static PetscErrorCode Account(CoupleAttach l, PetscReal dt)
+{
+  CoupleExchange *d = &l->done;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < l->n; i++) {
+    const Attachment *a = &l->a[i];
+    PetscReal w1[3], mid[3], t[3];
+
+    PetscCall(RigidGetState(l->rigid, a->body, NULL, NULL, NULL, w1));
+    for (int c = 0; c < 3; c++) {
+      mid[c] = 0.5 * (a->x0[c] + a->x1[c]);
+      d->beams += a->F[c] * (a->x1[c] - a->x0[c]) + 0.5 * dt * a->M[c] * (a->w0[c] + w1[c]);
+    }
+    CoupleCross(mid, a->F, t);
+    for (int c = 0; c < 3; c++) d->turnbeams[c] += dt * (t[c] + a->M[c]);
+  }
+  for (PetscInt k = 0; k < l->nfree; k++) {
+    const PetscReal *F = l->W + 6 * k, *X0 = l->X + 3 * k, *w0 = NULL;
+    PetscReal X[3], w1[3], T[3], mid[3], t[3];
+
+    for (PetscInt i = 0; i < l->n && !w0; i++)
+      if (l->a[i].unknown == k) w0 = l->a[i].w0;
+    PetscCall(RigidGetState(l->rigid, l->free[k], X, NULL, NULL, w1));
+    for (int c = 0; c < 3; c++) {
+      T[c] = F[3 + c] * l->length[k];
+      mid[c] = 0.5 * (X0[c] + X[c]);
+      d->bodies += F[c] * (X[c] - X0[c]) + 0.5 * dt * T[c] * (w0[c] + w1[c]);
+    }
+    CoupleCross(mid, F, t);
+    for (int c = 0; c < 3; c++) d->turnbodies[c] += dt * (t[c] + T[c]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -351,6 +388,7 @@ PetscErrorCode CoupleAttachAdvance(CoupleAttach l, PetscReal t)
   for (PetscInt i = 0; i < l->n; i++) PetscCall(PetscArraycpy(l->a[i].last, l->a[i].raw, 6));
   l->known = PETSC_TRUE;
   CoupleAttachSum(l);
+  PetscCall(Account(l, t - t0));
   PetscCheck(
       done || !m, l->comm, PETSC_ERR_NOT_CONVERGED,
       "the forces between beams and bodies did not converge at t = %g s: relative residual %g after %" PetscInt_FMT

@@ -22,6 +22,7 @@ PetscErrorCode CoupleShortCreate(MPI_Comm comm, Ancf ancf, Rigid rigid, CoupleSh
   c->ancf = ancf;
   c->rigid = rigid;
   c->persample = 8;
+  c->t0 = PETSC_NINFINITY;
   PetscCall(ShortRangeInit(&c->p));
   *sr = c;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -345,7 +346,7 @@ PetscErrorCode CoupleShortSetUp(CoupleShort c)
   PetscCall(PetscCalloc2(c->nlinks, &c->link, c->nlinks, &c->next));
   PetscCall(PetscMalloc5(6 * (size_t)c->nnodes, &c->e, 6 * (size_t)c->nnodes, &c->v, 3 * (size_t)c->nsamples, &c->x,
                          2 * (size_t)c->nnodes, &c->w, 2 * (size_t)c->nnodes, &c->z));
-  PetscCall(PetscCalloc2(c->nbodies, &c->root, 6 * (size_t)c->nbodies, &c->given));
+  PetscCall(PetscCalloc3(c->nbodies, &c->root, 6 * (size_t)c->nbodies, &c->given, 6 * (size_t)c->nbodies, &c->place));
   for (PetscInt i = 0; i < c->nbeams; i++)
     for (PetscInt k = 0; k < c->beam[i].links; k++) {
       ShortLink *l = &c->link[c->beam[i].link + k];
@@ -394,7 +395,7 @@ PetscErrorCode CoupleShortDestroy(CoupleShort *sr)
   if (c->e) {
     PetscCall(PetscFree2(c->link, c->next));
     PetscCall(PetscFree5(c->e, c->v, c->x, c->w, c->z));
-    PetscCall(PetscFree2(c->root, c->given));
+    PetscCall(PetscFree3(c->root, c->given, c->place));
   }
   PetscCall(PetscFree(*sr));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -531,17 +532,20 @@ PetscErrorCode CoupleShortApply(CoupleShort c, PetscReal h)
   c->half = .5 * h;
   PetscCall(CoupleShortFindPairs(c));
   PetscCall(Prepare(c));
+  PetscCall(CoupleShortStart(c, t, h));
   PetscCall(AncfGetLoads(c->ancf, &Q));
   PetscCall(PetscArrayzero(c->onbeams, 3));
   PetscCall(PetscArrayzero(c->onbodies, 3));
   PetscCall(PetscArrayzero(c->given, 6 * c->nbodies));
   for (PetscInt k = 0; k < c->npairs; k++) {
-    const ShortPair *p = &c->pair[k];
+    ShortPair *p = &c->pair[k];
     PetscReal vn = 0., f, G = Mobility(c, &p->a);
     if (p->body == SHORT_BEAM) G += Mobility(c, &p->b);
     if (p->body >= 0) G += p->root * c->root[p->body];
     PetscCall(NormalVelocity(c, p, &vn));
-    f = p->k * (c->p.roughness - p->gap) / (1. + .5 * h * h * p->k * G) - p->c * vn / (1. + h * p->c * G);
+    p->elastic = p->k * (c->p.roughness - p->gap) / (1. + .5 * h * h * p->k * G);
+    p->heat = -p->c * vn / (1. + h * p->c * G);
+    f = p->elastic + p->heat;
     AddForce(&p->a, f, p->n, Q);
     if (p->body == SHORT_BEAM)
       AddForce(&p->b, -f, p->n, Q);
@@ -554,6 +558,7 @@ PetscErrorCode CoupleShortApply(CoupleShort c, PetscReal h)
 PetscErrorCode CoupleShortRemove(CoupleShort c)
 {
   PetscFunctionBegin;
+  PetscCall(CoupleShortAccount(c));
   for (PetscInt i = 0; i < c->nbodies; i++) {
     PetscReal *g = c->given + 6 * i;
     if (g[0] == 0. && g[1] == 0. && g[2] == 0. && g[3] == 0. && g[4] == 0. && g[5] == 0.) continue;
@@ -567,7 +572,7 @@ PetscErrorCode CoupleShortRemove(CoupleShort c)
 PetscErrorCode CoupleShortGetForces(CoupleShort c, PetscInt *contacts, PetscReal *gap, PetscReal held[3], PetscReal bodies[3])
 {
   PetscFunctionBegin;
-  if (contacts) *contacts = c->npairs;
+  if (contacts) *contacts = c->contacts;
   if (gap) *gap = c->gap;
   if (held) PetscCall(PetscArraycpy(held, c->onbeams, 3));
   if (bodies) PetscCall(PetscArraycpy(bodies, c->onbodies, 3));

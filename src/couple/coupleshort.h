@@ -20,6 +20,7 @@ typedef struct {
   PetscReal n[3], r[3], gap, R, length; /* r: from the body's centre to the point of action, m */
   PetscReal factor;                     /* of the resistance */
   PetscReal c, k, root;                 /* resistance, N s/m; stiffness, N/m; root of the body's inverse mass, kg^-1/2 */
+  PetscReal elastic, heat, start;       /* parts of the force along n, N; n.(x_a - x_b) of beams at the start of the step, m */
 } ShortPair;
 
 typedef struct {
@@ -85,10 +86,19 @@ struct _p_CoupleShort {
   PetscReal *root;  /* of each body: sum of the roots of its inverse masses */
   PetscReal *given; /* bodies x 6: force and torque to take back */
   PetscReal gap, onbeams[3], onbodies[3];
+  PetscInt contacts;
+  PetscBool applied;           /* forces of a step that has not been accounted for */
+  CoupleExchange done, before; /* of all steps; of those before the one that began at t0 */
+  PetscReal t0, h;             /* of the last CoupleShortApply(), s */
+  PetscReal *place;            /* bodies x 6: centre and angular velocity then, m, rad/s */
 };
 
 /* couplenear.c: samples and links at the middle of the step; all pairs within reach. */
 extern PetscErrorCode CoupleShortPlace(CoupleShort c, PetscInt beam, PetscReal s, ShortPoint *p);
 extern PetscErrorCode CoupleShortFindPairs(CoupleShort c);
+
+/* coupleshortwork.c: before and after a step of h from t. */
+extern PetscErrorCode CoupleShortStart(CoupleShort c, PetscReal t, PetscReal h);
+extern PetscErrorCode CoupleShortAccount(CoupleShort c);
 
 #endif

@@ -88,6 +88,7 @@ PetscErrorCode CoupleMoveState(Couple c, FrondState *s)
   FrondMoveReal(s, "couple/ledger", c->ledger, 4 * c->n);
   for (PetscInt i = 0; i < c->n; i++) PetscCall(MoveSurface(c, i, s));
   if (c->attach) PetscCall(CoupleAttachMoveState(c->attach, s));
+  if (c->shortrange) PetscCall(CoupleShortMoveState(c->shortrange, s));
   PetscCall(CoupleLoadsMoveState(c, s));
   if (s->way == FROND_STATE_LOAD) PetscCall(CoupleMoveMarkers(c, 0.0));
   PetscFunctionReturn(PETSC_SUCCESS);

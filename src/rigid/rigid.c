@@ -203,6 +203,7 @@ PetscErrorCode RigidSetUp(Rigid rigid)
     PetscCall(RigidSystemCreate(rigid));
     PetscCall(RigidSystemProjectVelocity(rigid));
   }
+  PetscCall(PetscMemzero(&rigid->ledger, sizeof(rigid->ledger)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -399,7 +400,7 @@ static void JointPointers(RigidJoint *j, PetscReal *p[4])
 PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n)
 {
   PetscFunctionBegin;
-  *n = rigid->n * RIGID_PACK_SIZE + rigid->njoints * RIGID_JOINT_PACK_SIZE;
+  *n = rigid->n * RIGID_PACK_SIZE + rigid->njoints * RIGID_JOINT_PACK_SIZE + RIGID_LEDGER_SIZE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -421,6 +422,7 @@ PetscErrorCode RigidPack(Rigid rigid, PetscReal state[])
     for (int k = 0; k < 4; k++) *state++ = *p[k];
     *state++ = rigid->joint[i].broken ? 1. : 0.;
   }
+  PetscCall(PetscArraycpy(state, (const PetscReal *)&rigid->ledger, RIGID_LEDGER_SIZE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -441,6 +443,7 @@ PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[])
     for (int k = 0; k < 4; k++) *p[k] = *state++;
     rigid->joint[i].broken = *state++ != 0. ? PETSC_TRUE : PETSC_FALSE;
   }
+  PetscCall(PetscArraycpy((PetscReal *)&rigid->ledger, state, RIGID_LEDGER_SIZE));
   rigid->advanced = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -525,6 +528,7 @@ static PetscErrorCode RigidSubstep(Rigid rigid, PetscReal h)
   PetscBool jointed;
 
   PetscFunctionBegin;
+  RigidAuditLoads(rigid, .5 * h);
   if (rigid->contact) PetscCall(ShortRangeKick(rigid, h));
   for (PetscInt i = 0; i < rigid->n; i++) {
     PetscCall(RigidSystemHasBody(rigid, i, &jointed));
@@ -537,6 +541,7 @@ static PetscErrorCode RigidSubstep(Rigid rigid, PetscReal h)
     if (!jointed) RigidBodyEnd(rigid, i, h);
   }
   if (rigid->system) PetscCall(RigidSystemEnd(rigid, h));
+  RigidAuditLoads(rigid, .5 * h);
   rigid->t += h;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -157,7 +157,8 @@ FROND_EXTERN PetscErrorCode RigidGetTime(Rigid rigid, PetscReal *t);
 /* The integrator's own variables, RigidGetPackSize() reals, for restarts that go on bit for bit. */
 #define RIGID_PACK_SIZE 28      /* for each body */
 #define RIGID_JOINT_PACK_SIZE 5 /* for each joint, after the bodies */
-/* n: how many reals RigidPack() writes: RIGID_PACK_SIZE a body and RIGID_JOINT_PACK_SIZE a joint. */
+#define RIGID_LEDGER_SIZE 7     /* at the end: sums of RigidGetAudit() */
+/* n: how many reals RigidPack() writes: RIGID_PACK_SIZE a body, RIGID_JOINT_PACK_SIZE a joint, and RIGID_LEDGER_SIZE. */
 FROND_EXTERN PetscErrorCode RigidGetPackSize(Rigid rigid, PetscInt *n);
 /*
   The integrator's own variables, for restarts that go on bit for bit; the time is not among them, see RigidGetTime(). state:
@@ -207,6 +208,24 @@ FROND_EXTERN PetscErrorCode RigidGetEnergy(Rigid rigid, PetscReal *kinetic, Pets
   kg m^2/s.
 */
 FROND_EXTERN PetscErrorCode RigidGetMomentum(Rigid rigid, PetscReal p[3], PetscReal L[3]);
+
+/* What RigidGetAudit() tells of the free bodies. Sums begin at set-up. */
+typedef struct {
+  PetscReal kinetic;                     /* now, J */
+  PetscReal contact;                     /* elastic energy of contacts now, J */
+  PetscReal lubrication, impact, joints; /* energy taken by lubrication, by the damping of contacts, by dampers, yield and rupture
+                                            of joints, J */
+  PetscReal driven;     /* work of bodies that are not free, through contacts and joints, and of permanent torques, J */
+  PetscReal angular[3]; /* angular momentum about the origin now, kg m^2/s */
+  PetscReal turn[3];    /* angular impulse about the origin of weight, permanent loads, walls, the ground and bodies that are not
+                           free,    N m s */
+} RigidAudit;
+/*
+  Balances of the free bodies: kinetic + potential (RigidGetEnergy()) + springs (RigidGetJointEnergy()) + contact + lubrication +
+  impact + joints - driven changes by the work of the loads of RigidAddLoad(), angular - turn by their angular impulse; what is
+  left is the error of the time integration. Locks that hold a body back are not in turn. audit: to be filled.
+*/
+FROND_EXTERN PetscErrorCode RigidGetAudit(Rigid rigid, RigidAudit *audit);
 
 /*
   Joints, between two bodies or a body and the ground. Positions and directions are those of the initial placement, space

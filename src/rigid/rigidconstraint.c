@@ -30,6 +30,7 @@ struct _p_RigidSystem {
   PetscReal *W;            /* n x 2 x 6: M^-1 J^T of each end */
   PetscReal *lambda, *res; /* n */
   PetscReal *length;       /* n */
+  PetscReal *drive;        /* n: velocity that the bodies that are not free give the row */
   PetscBool *active;       /* n */
   PetscInt *start, *entry; /* rows of body i: entry[start[i] .. start[i + 1]), 2 row + end */
   PetscReal *wrench;       /* bodies x 6 */
@@ -121,6 +122,7 @@ PetscErrorCode RigidSystemCreate(Rigid rigid)
     s->n += rigid->joint[j].nrows;
   }
   PetscCall(PetscMalloc4((size_t)s->n, &s->joint, (size_t)s->n, &s->local, (size_t)s->n, &s->row0, (size_t)s->n, &s->row1));
+  PetscCall(PetscMalloc1((size_t)s->n, &s->drive));
   PetscCall(PetscMalloc5((size_t)(12 * s->n), &s->W, (size_t)s->n, &s->lambda, (size_t)s->n, &s->res, (size_t)s->n, &s->length,
                          (size_t)s->n, &s->active));
   PetscCall(PetscMalloc2((size_t)(6 * rigid->n), &s->wrench, (size_t)rigid->n, &s->saved));
@@ -143,6 +145,7 @@ PetscErrorCode RigidSystemDestroy(Rigid rigid)
   PetscCall(PetscFree4(s->joint, s->local, s->row0, s->row1));
   PetscCall(PetscFree5(s->W, s->lambda, s->res, s->length, s->active));
   PetscCall(PetscFree2(s->wrench, s->saved));
+  PetscCall(PetscFree(s->drive));
   PetscCall(PetscFree(s->start));
   PetscCall(PetscFree(s->entry));
   PetscCall(PetscFree(s->value));
@@ -274,14 +277,28 @@ static void SystemKick(Rigid rigid, PetscReal h)
   }
 }
 
-static PetscReal RowVelocity(Rigid rigid, const RigidRow *row, PetscInt r)
+/* Angular impulse of the wrenches over h; the bodies are where they are now, or where they were when saved. */
+static void AuditTurn(Rigid rigid, const RigidBody *saved, PetscReal h)
+{
+  RigidSystem s = rigid->system;
+  for (PetscInt i = 0; i < rigid->n; i++) {
+    const PetscReal *w = s->wrench + 6 * i;
+    PetscReal x[3];
+    if (s->start[i + 1] == s->start[i] || rigid->body[i].spec.motion != RIGID_FREE) continue;
+    Vec3Cross(saved ? saved[i].X : rigid->body[i].X, w, x);
+    for (int k = 0; k < 3; k++) rigid->ledger.turn[k] += h * (x[k] + w[3 + k]);
+  }
+}
+
+/* Velocity of a row; of the ends that are not free alone, when told so. */
+static PetscReal RowVelocity(Rigid rigid, const RigidRow *row, PetscInt r, PetscBool driven)
 {
   PetscReal v = 0.;
   for (int e = 0; e < 2; e++) {
     const PetscInt i = RowEnd(rigid, r, e);
     const PetscReal *J = e ? row->Jb : row->Ja;
     PetscReal w[3];
-    if (i == RIGID_GROUND) continue;
+    if (i == RIGID_GROUND || (driven && rigid->body[i].spec.motion == RIGID_FREE)) continue;
     RigidBodyOmega(&rigid->body[i], rigid->body[i].q, w);
     v += Vec3Dot(J, rigid->body[i].V) + Vec3Dot(J + 3, w);
   }
@@ -298,6 +315,17 @@ static void ActivateRows(Rigid rigid, PetscBool soft)
   }
 }
 
+/* Work of ends that are not free, and angular impulses, of the rows of one kind (hard 1, soft 0) over h. */
+static void AuditRows(Rigid rigid, const RigidRow *row, int kind, PetscReal h)
+{
+  RigidSystem s = rigid->system;
+  for (PetscInt r = 0; r < s->n; r++) {
+    if ((int)rigid->joint[s->joint[r]].hard[s->local[r]] == kind)
+      rigid->ledger.driven -= h * s->lambda[r] * RowVelocity(rigid, &row[r], r, PETSC_TRUE);
+  }
+  AuditTurn(rigid, NULL, h);
+}
+
 /* Hard rows of the velocity, at the present placement whose rows are given. Three corrections remove the diagonal shift's effect.
  */
 static PetscErrorCode ProjectVelocity(Rigid rigid, const RigidRow *row)
@@ -309,12 +337,13 @@ static PetscErrorCode ProjectVelocity(Rigid rigid, const RigidRow *row)
   PetscCall(SystemAssemble(rigid, row, 0.));
   for (int it = 0; it < 3; it++) {
     for (PetscInt r = 0; r < s->n; r++) {
-      s->res[r] = s->active[r] ? RowVelocity(rigid, &row[r], r) : 0.;
+      s->res[r] = s->active[r] ? RowVelocity(rigid, &row[r], r, PETSC_FALSE) : 0.;
       s->lambda[r] = 0.;
     }
     PetscCall(SystemSolve(rigid, -1., s->lambda));
     SystemWrench(rigid, row, s->lambda, 1);
     SystemKick(rigid, 1.);
+    AuditRows(rigid, row, 1, 1.);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -428,19 +457,26 @@ static void FinishJoints(Rigid rigid, PetscReal h)
     RigidJoint *j = &rigid->joint[i];
     const PetscBool turns = j->spec.type == RIGID_JOINT_HINGE || j->spec.type == RIGID_JOINT_BEND ? PETSC_TRUE : PETSC_FALSE;
     PetscInt soft = 0;
-    PetscReal angle = 0.;
+    PetscReal angle = 0., elastic = 0.;
     for (PetscInt l = 0; l < j->nrows; l++) {
       const PetscInt r = j->first + l;
+      const PetscReal g0 = s->row0[r].g, g1 = s->row1[r].g;
+      PetscReal plastic = 0.;
       if (j->hard[l]) continue;
       angle += PetscSqr(s->row1[r].g + j->rest[soft]);
       if (j->spec.type == RIGID_JOINT_HINGE) j->angle = s->row1[r].g + j->rest[soft];
       if (turns && !j->broken && j->k[l] > 0. && PetscAbsReal(s->lambda[r]) >= j->spec.yield)
-        j->rest[soft] +=
-            .5 * (s->row0[r].g + s->row1[r].g) + (s->lambda[r] + j->c[l] * (s->row1[r].g - s->row0[r].g) / h) / j->k[l];
-      soft++;
+        plastic = .5 * (g0 + g1) + (s->lambda[r] + j->c[l] * (g1 - g0) / h) / j->k[l];
+      j->rest[soft++] += plastic;
+      if (j->broken) continue;
+      elastic += .5 * j->k[l] * PetscSqr(g1 - plastic);
+      rigid->ledger.joints -= s->lambda[r] * (g1 - g0) + .5 * j->k[l] * (PetscSqr(g1 - plastic) - g0 * g0);
     }
     for (PetscInt l = 0; l < j->nrows; l++) j->force[l] = s->lambda[j->first + l];
-    if (turns && PetscSqrtReal(angle) > j->spec.rupture) j->broken = PETSC_TRUE;
+    if (turns && !j->broken && PetscSqrtReal(angle) > j->spec.rupture) {
+      j->broken = PETSC_TRUE;
+      rigid->ledger.joints += elastic;
+    }
   }
 }
 
@@ -468,6 +504,7 @@ PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
   SystemRows(rigid, s->row0);
   SystemLengths(rigid);
   PetscCall(CheckAssembled(rigid));
+  for (PetscInt r = 0; r < s->n; r++) s->drive[r] = RowVelocity(rigid, &s->row0[r], r, PETSC_TRUE);
   for (PetscInt i = 0; i < rigid->n; i++) {
     if (s->start[i + 1] == s->start[i]) continue;
     PetscCall(RigidBodyCheckLoad(rigid, i));
@@ -492,6 +529,8 @@ PetscErrorCode RigidSystemEnd(Rigid rigid, PetscReal h)
 
   PetscFunctionBegin;
   SystemWrench(rigid, s->row0, s->lambda, -1); /* goes into the accelerations */
+  AuditTurn(rigid, s->saved, .5 * h);
+  for (PetscInt r = 0; r < s->n; r++) rigid->ledger.driven -= .5 * h * s->lambda[r] * s->drive[r];
   for (PetscInt i = 0; i < rigid->n; i++) {
     RigidBody *b = &rigid->body[i];
     if (s->start[i + 1] == s->start[i]) continue;
@@ -503,69 +542,8 @@ PetscErrorCode RigidSystemEnd(Rigid rigid, PetscReal h)
   }
   SystemWrench(rigid, s->row1, s->lambda, 0);
   SystemKick(rigid, .5 * h);
+  AuditRows(rigid, s->row1, 0, .5 * h);
   PetscCall(ProjectVelocity(rigid, s->row1));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CheckJoint(Rigid rigid, PetscInt joint)
-{
-  PetscFunctionBegin;
-  PetscCheck(joint >= 0 && joint < rigid->njoints, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "Rigid joint %" PetscInt_FMT ": there are %" PetscInt_FMT " joints", joint, rigid->njoints);
-  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RigidGetJointForce(Rigid rigid, PetscInt joint, PetscReal F[3], PetscReal M[3])
-{
-  RigidRow row[RIGID_MAX_ROWS];
-  RigidJoint *j;
-  PetscReal f[3] = {0., 0., 0.}, m[3] = {0., 0., 0.}, arm[3] = {0., 0., 0.}, x[3];
-
-  PetscFunctionBegin;
-  PetscCall(CheckJoint(rigid, joint));
-  j = &rigid->joint[joint];
-  RigidJointRows(rigid, j, row);
-  for (PetscInt r = 0; r < j->nrows; r++)
-    for (int k = 0; k < 3; k++) {
-      f[k] += j->force[r] * row[r].Ja[k];
-      m[k] += j->force[r] * row[r].Ja[3 + k];
-    }
-  if (j->spec.a != RIGID_GROUND)
-    QuatRotate(rigid->body[j->spec.a].q, j->ra, arm);
-  else
-    for (int k = 0; k < 3; k++) arm[k] = j->ra[k];
-  Vec3Cross(arm, f, x);
-  for (int k = 0; k < 3; k++) {
-    if (F) F[k] = f[k];
-    if (M) M[k] = m[k] - x[k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RigidGetJointState(Rigid rigid, PetscInt joint, PetscReal *coordinate, PetscBool *broken)
-{
-  RigidRow row[RIGID_MAX_ROWS];
-  RigidJoint *j;
-  PetscReal sum = 0.;
-  PetscInt soft = 0;
-
-  PetscFunctionBegin;
-  PetscCall(CheckJoint(rigid, joint));
-  j = &rigid->joint[joint];
-  RigidJointRows(rigid, j, row);
-  for (PetscInt r = 0; r < j->nrows; r++) {
-    if (j->hard[r]) continue;
-    if (j->spec.type == RIGID_JOINT_SPRING)
-      sum = row[r].g;
-    else if (j->spec.type == RIGID_JOINT_BEND)
-      sum = PetscSqrtReal(sum * sum + PetscSqr(row[r].g + j->rest[soft]));
-    else
-      sum = row[r].g + j->rest[soft];
-    soft++;
-  }
-  if (coordinate) *coordinate = sum;
-  if (broken) *broken = j->broken;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -582,25 +560,10 @@ PetscErrorCode RigidGetJointError(Rigid rigid, PetscReal *position, PetscReal *v
     for (PetscInt r = 0; r < j->nrows; r++) {
       if (!j->hard[r] || j->broken) continue;
       p = PetscMax(p, PetscAbsReal(row[r].g));
-      v = PetscMax(v, PetscAbsReal(RowVelocity(rigid, &row[r], j->first + r)));
+      v = PetscMax(v, PetscAbsReal(RowVelocity(rigid, &row[r], j->first + r, PETSC_FALSE)));
     }
   }
   if (position) *position = p;
   if (velocity) *velocity = v;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RigidGetJointEnergy(Rigid rigid, PetscReal *elastic)
-{
-  PetscFunctionBegin;
-  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
-  *elastic = 0.;
-  for (PetscInt i = 0; i < rigid->njoints; i++) {
-    RigidRow row[RIGID_MAX_ROWS];
-    RigidJoint *j = &rigid->joint[i];
-    RigidJointRows(rigid, j, row);
-    for (PetscInt r = 0; r < j->nrows && !j->broken; r++)
-      if (!j->hard[r]) *elastic += .5 * j->k[r] * row[r].g * row[r].g;
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

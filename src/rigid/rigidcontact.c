@@ -44,7 +44,8 @@ static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spac
   *contact = c;
   c->reach = reach;
   c->nbodies = rigid->n;
-  PetscCall(PetscMalloc3((size_t)rigid->n, &c->radius, (size_t)rigid->n, &c->next, (size_t)rigid->n, &c->G));
+  PetscCall(PetscMalloc4((size_t)rigid->n, &c->radius, (size_t)rigid->n, &c->next, (size_t)rigid->n, &c->G, 6 * (size_t)rigid->n,
+                         &c->kick));
   PetscCall(PetscCalloc1((size_t)rigid->n, &c->surface));
   PetscCall(PetscMalloc1((size_t)rigid->njoints, &c->joined));
   for (PetscInt j = 0; j < rigid->njoints; j++) {
@@ -99,7 +100,7 @@ PetscErrorCode RigidContactDestroy(RigidContact *contact)
   PetscCall(PetscFree(c->contact));
   for (PetscInt i = 0; i < c->nbodies; i++) PetscCall(PetscFree(c->surface[i].x));
   for (PetscInt i = 0; i < c->nbodies; i++) PetscCall(PetscFree(c->surface[i].volume));
-  PetscCall(PetscFree3(c->radius, c->next, c->G));
+  PetscCall(PetscFree4(c->radius, c->next, c->G, c->kick));
   PetscCall(PetscFree(c->surface));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -410,15 +411,39 @@ PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick)
     if (t->j >= 0) c->G[t->j] += t->gamma * InverseMass(&rigid->body[t->j], t->n, t->rj);
   }
   for (PetscInt k = 0; k < c->n; k++) {
-    const Contact *t = &c->contact[k];
+    Contact *t = &c->contact[k];
     RigidBody *bi = &rigid->body[t->i], *bj = t->j >= 0 ? &rigid->body[t->j] : NULL;
     const PetscReal v = NormalVelocity(rigid, t), w = InverseMass(bi, t->n, t->ri) + (bj ? InverseMass(bj, t->n, t->rj) : 0.);
-    PetscReal f = -t->gamma * v / (1. + kick * (c->G[t->i] + (bj ? c->G[t->j] : 0.)));
-    if (t->share > 0. && w > 0.) f += t->share * ShortRangeContact(&rigid->shortrange, t->R, 1. / w, t->s, v);
+    PetscReal f = -t->gamma * v / (1. + kick * (c->G[t->i] + (bj ? c->G[t->j] : 0.))), contact = 0.;
+    t->v = v;
+    t->lubrication = f;
+    t->elastic = t->impact = 0.;
+    if (t->share > 0. && w > 0.) {
+      contact = t->share * ShortRangeContact(&rigid->shortrange, t->R, 1. / w, t->s, v);
+      t->elastic = t->share * ShortRangeContact(&rigid->shortrange, t->R, 1. / w, t->s, 0.);
+      t->impact = contact - t->elastic;
+    }
+    f += contact;
     AddForce(bi, t->ri, t->n, f);
     if (bj) AddForce(bj, t->rj, t->n, -f);
   }
+  PetscCall(RigidAuditContacts(rigid, kick));
   PetscCall(PetscLogEventEnd(RIGID_Contact, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of the repulsion where the bodies are now. */
+PetscErrorCode RigidContactEnergy(Rigid rigid, PetscReal *elastic)
+{
+  RigidContact c = rigid->contact;
+
+  PetscFunctionBegin;
+  *elastic = 0.;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RigidFindPairs(rigid, c));
+  PetscCall(FindContacts(rigid, c));
+  for (PetscInt k = 0; k < c->n; k++)
+    *elastic += c->contact[k].share * ShortRangeContactEnergy(&rigid->shortrange, c->contact[k].R, c->contact[k].s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

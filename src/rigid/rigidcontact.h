@@ -14,6 +14,7 @@ typedef struct {
 typedef struct {
   PetscInt i, j;
   PetscReal n[3], ri[3], rj[3], s, gamma, R, share;
+  PetscReal v, elastic, lubrication, impact; /* normal velocity, m/s; parts of the force on i along n, N */
 } Contact;
 
 struct _p_RigidContact {
@@ -30,6 +31,7 @@ struct _p_RigidContact {
   PetscInt n, nalloc;
   Contact *contact;
   PetscReal *G;         /* 1/s, of each body */
+  PetscReal *kick;      /* 6 of each body: change of V and w by the present kick, m/s, rad/s */
   RigidMarkers near[2]; /* surface points of a pair that face the other body, space frame */
 };
 

@@ -56,6 +56,11 @@ typedef struct {
   void *ctx;
 } RigidWall;
 
+/* Since set-up, part of the packed state: RigidAudit says what they are. */
+typedef struct {
+  PetscReal lubrication, impact, joints, driven, turn[3];
+} RigidLedger;
+
 struct _p_Rigid {
   MPI_Comm comm;
   char *prefix;
@@ -74,6 +79,7 @@ struct _p_Rigid {
   PetscInt nwalls;
   RigidWall wall[7];    /* 6 planes, and one of any shape */
   RigidContact contact; /* NULL without short-range forces */
+  RigidLedger ledger;
   PetscBool setup, advanced;
 };
 
@@ -118,6 +124,11 @@ extern PetscErrorCode RigidSurfacePoints(const RigidBodySpec *s, PetscInt dim, P
 extern PetscErrorCode RigidContactSetUp(Rigid rigid);
 extern PetscErrorCode RigidContactDestroy(RigidContact *c);
 extern PetscErrorCode RigidContactForces(Rigid rigid, PetscReal kick);
+extern PetscErrorCode RigidContactEnergy(Rigid rigid, PetscReal *elastic);
+
+/* rigidaudit.c */
+extern PetscErrorCode RigidAuditContacts(Rigid rigid, PetscReal kick);
+extern void RigidAuditLoads(Rigid rigid, PetscReal h);
 
 /* rigidtable.c */
 extern void RigidTableVelocity(const RigidBody *b, PetscReal t, PetscReal v[6], PetscReal a[6]);

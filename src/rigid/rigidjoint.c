@@ -319,3 +319,80 @@ void RigidJointRows(Rigid rigid, RigidJoint *j, RigidRow row[])
   for (PetscInt r = 0; r < j->nrows; r++)
     if (!j->hard[r]) row[r].g -= j->rest[soft++];
 }
+
+static PetscErrorCode CheckJoint(Rigid rigid, PetscInt joint)
+{
+  PetscFunctionBegin;
+  PetscCheck(joint >= 0 && joint < rigid->njoints, rigid->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Rigid joint %" PetscInt_FMT ": there are %" PetscInt_FMT " joints", joint, rigid->njoints);
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetJointForce(Rigid rigid, PetscInt joint, PetscReal F[3], PetscReal M[3])
+{
+  RigidRow row[RIGID_MAX_ROWS];
+  RigidJoint *j;
+  PetscReal f[3] = {0., 0., 0.}, m[3] = {0., 0., 0.}, arm[3] = {0., 0., 0.}, x[3];
+
+  PetscFunctionBegin;
+  PetscCall(CheckJoint(rigid, joint));
+  j = &rigid->joint[joint];
+  RigidJointRows(rigid, j, row);
+  for (PetscInt r = 0; r < j->nrows; r++)
+    for (int k = 0; k < 3; k++) {
+      f[k] += j->force[r] * row[r].Ja[k];
+      m[k] += j->force[r] * row[r].Ja[3 + k];
+    }
+  if (j->spec.a != RIGID_GROUND)
+    QuatRotate(rigid->body[j->spec.a].q, j->ra, arm);
+  else
+    for (int k = 0; k < 3; k++) arm[k] = j->ra[k];
+  Vec3Cross(arm, f, x);
+  for (int k = 0; k < 3; k++) {
+    if (F) F[k] = f[k];
+    if (M) M[k] = m[k] - x[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetJointState(Rigid rigid, PetscInt joint, PetscReal *coordinate, PetscBool *broken)
+{
+  RigidRow row[RIGID_MAX_ROWS];
+  RigidJoint *j;
+  PetscReal sum = 0.;
+  PetscInt soft = 0;
+
+  PetscFunctionBegin;
+  PetscCall(CheckJoint(rigid, joint));
+  j = &rigid->joint[joint];
+  RigidJointRows(rigid, j, row);
+  for (PetscInt r = 0; r < j->nrows; r++) {
+    if (j->hard[r]) continue;
+    if (j->spec.type == RIGID_JOINT_SPRING)
+      sum = row[r].g;
+    else if (j->spec.type == RIGID_JOINT_BEND)
+      sum = PetscSqrtReal(sum * sum + PetscSqr(row[r].g + j->rest[soft]));
+    else
+      sum = row[r].g + j->rest[soft];
+    soft++;
+  }
+  if (coordinate) *coordinate = sum;
+  if (broken) *broken = j->broken;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RigidGetJointEnergy(Rigid rigid, PetscReal *elastic)
+{
+  PetscFunctionBegin;
+  PetscCheck(rigid->setup, rigid->comm, PETSC_ERR_ORDER, "Call RigidSetUp() first");
+  *elastic = 0.;
+  for (PetscInt i = 0; i < rigid->njoints; i++) {
+    RigidRow row[RIGID_MAX_ROWS];
+    RigidJoint *j = &rigid->joint[i];
+    RigidJointRows(rigid, j, row);
+    for (PetscInt r = 0; r < j->nrows && !j->broken; r++)
+      if (!j->hard[r]) *elastic += .5 * j->k[r] * row[r].g * row[r].g;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -97,6 +97,12 @@ PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, Petsc
   return k * d * PetscSqrtReal(d) - alpha * PetscSqrtReal(m * k * PetscSqrtReal(d)) * dsdt;
 }
 
+PetscReal ShortRangeContactEnergy(const ShortRange *p, PetscReal R, PetscReal s)
+{
+  const PetscReal d = p->roughness - s;
+  return p->modulus == 0. || d <= 0. ? 0. : .4 * 4. / 3. * p->modulus * PetscSqrtReal(R) * d * d * PetscSqrtReal(d);
+}
+
 /* m v^2/2 = (2/5) k d^(5/2). */
 PetscReal ShortRangeOverlap(const ShortRange *p, PetscReal R, PetscReal m, PetscReal v)
 {

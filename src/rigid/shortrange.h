@@ -66,6 +66,8 @@ FROND_EXTERN void ShortRangeLineContact(const ShortRange *p, PetscReal m, PetscR
   Tsuji et al. (1992); Antypov and Elliott (2011).
 */
 FROND_EXTERN PetscReal ShortRangeContact(const ShortRange *p, PetscReal R, PetscReal m, PetscReal s, PetscReal dsdt);
+/* Elastic energy (J) of that repulsion, (2/5) k d^(5/2). p: parameters. R: 1/(1/ai + 1/aj), m. s: gap, m. Source: Hertz. */
+FROND_EXTERN PetscReal ShortRangeContactEnergy(const ShortRange *p, PetscReal R, PetscReal s);
 /*
   Largest overlap (m) of an elastic collision, m v^2/2 = (2/5) k d^(5/2); below the roughness the smooth surfaces never meet.
   p: parameters. R: 1/(1/ai + 1/aj), m. m: reduced mass, kg. v: speed, m/s. Source: Hertz.
