@@ -114,7 +114,7 @@ FROND_EXTERN PetscErrorCode AncfSetSubsteps(Ancf ancf, PetscInt ratio);
 FROND_EXTERN PetscErrorCode AncfSetStrain(Ancf ancf, AncfStrain strain);
 /*
   How supports and joints are kept, before AncfSetUp(); multipliers: a differential-algebraic equation, with the TS types alpha2,
-  bdf and beuler. type: eliminate (default) or multipliers. Source: the paper, Sect. 2.3.
+  theta, cn, bdf and beuler. type: eliminate (default) or multipliers. Source: the paper, Sect. 2.3.
 */
 FROND_EXTERN PetscErrorCode AncfSetConstraints(Ancf ancf, AncfConstraints type);
 /*

@@ -5,10 +5,12 @@
 
   Phi: a row for each supported coordinate, e_i less its prescribed value, and the rows of the joints (ancfconstraint.c). This is
   a differential-algebraic equation of index 3. alpha2 takes it as it stands (Arnold, Bruels, Multibody System Dynamics 18 (2007):
-  second order), as do bdf and beuler, whose stages are the ends of steps; multipliers have no history that motion depends on:
-  a step finds those of its own. Positions keep the constraints to Newton's tolerance in the stages: with bdf, beuler and rows
-  that are linear at the ends of steps too, with alpha2 and corners these are off by dt^2/8 of the row's curvature. Velocities
-  follow to the order of the step. Nothing adds up: each step meets the constraints anew.
+  second order), theta likewise, and cn, bdf and beuler, whose stages are the ends of steps. Others lose their order where
+  supports are driven: arkimex l2 to velocities off by more than the step's error, alpha and rosw to velocities that do not
+  settle; multipliers have no history that motion depends on: a step finds those of its own. Positions keep the constraints to
+  Newton's tolerance in the stages: with cn, bdf, beuler and rows that are linear at the ends of steps too, with alpha2, theta and
+  corners these are off by dt^2/8 of the row's curvature. Velocities follow to the order of the step. Nothing adds up: each step
+  meets the constraints anew.
 
   The multipliers come after the coordinates, filled up to whole blocks. Both Phi and lambda are scaled with s, an axial
   stiffness, so that one residual norm serves all rows: s Phi = 0, forces s G^T lambda.
@@ -61,11 +63,11 @@ PetscErrorCode AncfDaeSetUp(Ancf ancf)
   PetscFunctionBegin;
   if (ancf->constraints != ANCF_CONSTRAINTS_MULTIPLIERS) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TSGetType(ancf->ts, &type));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)ancf->ts, &fit, TSALPHA2, TSBDF, TSBEULER, ""));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)ancf->ts, &fit, TSALPHA2, TSTHETA, TSCN, TSBDF, TSBEULER, ""));
   PetscCheck(
       fit, ancf->comm, PETSC_ERR_ARG_INCOMP,
       "-ancf_constraints multipliers makes a differential-algebraic equation, which -ancf_ts_type %s does not solve; use one "
-      "of: alpha2 bdf beuler",
+      "of: alpha2 theta cn bdf beuler",
       type);
   PetscCall(PetscCalloc2(ancf->nnodes, &ancf->nofix, 6 * (size_t)ancf->nnodes, &ancf->heldrow));
   for (PetscInt i = 0; i < 6 * ancf->nnodes; i++)

@@ -107,6 +107,26 @@ static PetscErrorCode AncfChooseARKIMEX(Ancf ancf)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  cn, and theta with endpoints, take the forces at the start of a step once more, which are those of other equations once
+  dependent coordinates of a corner were chosen anew: Newton's method ends in values that are not finite.
+*/
+static PetscErrorCode CheckEndpoint(Ancf ancf)
+{
+  PetscBool cn, theta, endpoint = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSCN, &cn));
+  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSTHETA, &theta));
+  if (theta) PetscCall(TSThetaGetEndpoint(ancf->ts, &endpoint));
+  for (PetscInt k = 0; k < ancf->njoints && (cn || endpoint); k++)
+    PetscCheck(ancf->joints[k].linear || ancf->constraints == ANCF_CONSTRAINTS_MULTIPLIERS, ancf->comm, PETSC_ERR_ARG_INCOMP,
+               "-ancf_ts_type %s cannot keep the rigid joint %" PetscInt_FMT
+               " by elimination; use one of: alpha2 theta bdf beuler alpha arkimex rosw rk, or -ancf_constraints multipliers",
+               cn ? "cn" : "theta with -ancf_ts_theta_endpoint", k);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rosenbrock-W methods with an explicit stage have no matrix to solve with there; bdf beyond the second order. */
 PetscErrorCode AncfCheckVariant(Ancf ancf)
 {
@@ -126,6 +146,7 @@ PetscErrorCode AncfCheckVariant(Ancf ancf)
                "rodas3 sandu3 theta1 theta2 grk4t shamp4 veldd4 4l",
                ancf_variants[k].option + 1, given);
   }
+  PetscCall(CheckEndpoint(ancf));
   PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSBDF, &is));
   if (!is) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TSBDFGetOrder(ancf->ts, &order));
