@@ -39,7 +39,7 @@ def elastica_tip(n=2000):
 def run(g):
     rest, curves = elastica_tip(), []
     dp = "0.0266666666666666667" if g.fine else "0.04"
-    for mu in (0.1, 1, 5, 10, 20) if g.fine else (1, 20):
+    for mu in (0.1, 1, 5, 10, 20) if g.fine else (1, 10, 20):
         # The tip falls at up to 2 m/s in the thin fluids, at a fraction of it in the thick ones.
         r = g.run("cantilever_fluid", "-sph_dp", dp, "-sph_viscosity", str(mu), "-sph_max_speed", "2" if mu < 10 else "1", "-time_end", "3" if g.fine else "2",
                   label="mu_%g" % mu)

@@ -9,7 +9,12 @@ TEXT = """
 A cylinder of radius R and twice the fluid's density on a spring swings in the fluid between it and a fixed cylinder of 5 R. Small swings
 x ~ exp(-i w t) solve the unsteady Stokes equations exactly: stream function f(r) cos(theta) with f = A r + B/r + C I1(k r) + D K1(k r), k² = -i w rho/mu, f = R and
 f' = 1 at R, f = f' = 0 at 5 R. Frequency and decay rate are fitted to the history from a quarter of a period on (Prony); errors are
-parts of |w|. The swing begins at 0.05 R: nonlinear terms are of the order of its square.
+parts of |w|. The swing begins at 0.05 R.
+
+Frequencies are within 0.3 % at the finest spacing, decay rates within 0.9 % of |w|, which is 4 % (Re 10) and 9 % (Re 50) of themselves:
+the swing is damped a little too fast. Of that 0.6 and 0.9 % come from the release at rest, which the exact linear motion has too
+(Laplace transform, fitted likewise); a swing of 0.02 R instead of 0.05 R lowers the 9.3 % at Re 50, R/dp = 8 to 6.5 %. Neither
+XSPH (11.9 % without) nor the density's re-initialisation (8.9 % without) explains the rest; the step and the speed of sound are to be tried.
 """
 EXACT = {10: 0.661721 - 0.132566j, 50: 0.741520 - 0.062036j}
 
@@ -42,6 +47,8 @@ def run(g):
                 g.number("Re %d, R/dp %d: frequency (1/s)" % (re, across), w.real, exact.real, 0.03, "exact", scale=abs(exact))
                 g.number("Re %d, R/dp %d: decay rate (1/s)" % (re, across), -w.imag, -exact.imag, 0.03, "exact", scale=abs(exact))
                 i = np.searchsorted(t, period / 4)
+                # The demand on the decay of itself is not met: what is held here is 0.7 to 1 % of |w|, as above, with the smallest decay 0.083 |w|.
+                g.number("Re %d, R/dp %d: decay rate, of itself" % (re, across), -w.imag, -exact.imag, 0.12, "exact", demand=0.03)
                 curves.append((re, t, x, x[i], exact, t[i]))
 
     def plot(a):
