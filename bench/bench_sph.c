@@ -285,6 +285,40 @@ static PetscErrorCode Row(const Case *c, PetscInt warm, PetscInt steps, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Verlet and, with full, the other integrators; all kernels, diffusions and numbers of threads; then what the choices cost. */
+static PetscErrorCode Table(Case c, PetscBool full, PetscBool precision, PetscInt warm, PetscInt steps, PetscInt reps)
+{
+  const SphIntegratorType order[] = {SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC, SPH_INTEGRATOR_RK2};
+  Result r, one[2][2] = {{{0}}}, many = {0}; /* one thread, [kernel][diffusion]; most threads, Wendland, no diffusion */
+
+  PetscFunctionBegin;
+  for (c.threads = 1; c.threads <= PetscMax(2, omp_get_num_procs()); c.threads *= 2)
+    for (int k = 1; k >= 0; k--)
+      for (int d = 0; d < 2; d++)
+        for (int i = 0; i < (full ? 3 : 1); i++) {
+          c.kernel = (SphKernelType)k;
+          c.diffusion = (SphDiffusionType)d;
+          c.integrator = order[i];
+          PetscCall(Row(&c, warm, steps, reps, &r));
+          if (i == 0 && c.threads == 1) one[k][d] = r;
+          if (i == 0 && k == 1 && d == 0) many = r;
+        }
+  printf(
+      "Verlet, by the clock: cubic spline/Wendland %.2f (time; with density diffusion %.2f), density diffusion/none %.2f, most "
+      "threads/one %.2f (speed)\n",
+      one[1][0].wall / one[0][0].wall, one[1][1].wall / one[0][1].wall, one[1][0].wall / one[1][1].wall,
+      many.wall / one[1][0].wall);
+  if (!precision) PetscFunctionReturn(PETSC_SUCCESS);
+  c.kernel = SPH_KERNEL_WENDLAND;
+  c.diffusion = SPH_DIFFUSION_NONE;
+  c.integrator = SPH_INTEGRATOR_VERLET;
+  c.precision = SPH_PRECISION_DOUBLE;
+  c.threads = 1;
+  PetscCall(Row(&c, warm, steps, reps, &r));
+  printf("double/single %.2f (time)\n", one[1][0].wall / r.wall);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Cost against size, by processor time; ratios are those of the time per marker (and per neighbour) to that of the first size. */
 static PetscErrorCode Flat(Case c, const PetscReal *sizes, PetscInt nsizes, PetscInt warm, PetscInt steps, PetscInt reps)
 {
@@ -361,27 +395,7 @@ int main(int argc, char **argv)
              c.threads, r.wall * 1e-6, r.cpu * c.threads * 1e-6, r.bytes, r.resident, r.peak);
       continue;
     }
-    for (int t = 1; t <= PetscMax(2, omp_get_num_procs()); t *= 2)
-      for (int k = 1; k >= 0; k--)
-        for (int d = 0; d < 2; d++)
-          for (int i = 0; i < 3; i++) {
-            const SphIntegratorType order[] = {SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC, SPH_INTEGRATOR_RK2};
-            if (!full && i > 0) continue;
-            c.threads = t;
-            c.kernel = (SphKernelType)k;
-            c.diffusion = (SphDiffusionType)d;
-            c.integrator = order[i];
-            PetscCall(Row(&c, warm, steps, reps, &r));
-          }
-    if (s == 0) {
-      c.kernel = SPH_KERNEL_WENDLAND;
-      c.diffusion = SPH_DIFFUSION_NONE;
-      c.integrator = SPH_INTEGRATOR_VERLET;
-      c.precision = SPH_PRECISION_DOUBLE;
-      c.threads = 1;
-      PetscCall(Row(&c, warm, steps, reps, &r));
-      c.precision = SPH_PRECISION_SINGLE;
-    }
+    PetscCall(Table(c, full, s == 0 ? PETSC_TRUE : PETSC_FALSE, warm, steps, reps));
   }
   PetscCall(PetscFinalize());
   return 0;

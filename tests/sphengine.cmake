@@ -23,3 +23,11 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT FROND_HAVE_CUDA)
     set_tests_properties(test_sph_engine_pairs_${arch} PROPERTIES LABELS unit TIMEOUT 300 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
   endforeach()
 endif()
+
+# The vectorisation report of the pair loops, for AVX2 and AVX-512 whatever the processor.
+find_program(FROND_TEST_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_C_COMPILER_ID STREQUAL GNU AND FROND_TEST_PYTHON)
+  add_test(NAME sph_vectorised COMMAND ${FROND_TEST_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/sph_vectorised.py ${CMAKE_C_COMPILER} ${PROJECT_SOURCE_DIR}
+    ${PETSC_INCLUDE_DIRS} ${MPI_C_INCLUDE_DIRS})
+  set_tests_properties(sph_vectorised PROPERTIES LABELS unit TIMEOUT 120)
+endif()
