@@ -171,6 +171,12 @@ static PetscErrorCode CheckBackend(Sph sph)
   PetscCheck(!cuda || sph->par.shifting == SPH_SHIFTING_NONE, sph->comm, PETSC_ERR_SUP,
              "sph_shifting = %s: the cuda backend has none; use sph_type cpu or sph_shifting none",
              SphShiftingTypes[sph->par.shifting]);
+  PetscCheck(!cuda || sph->par.gradient == SPH_GRADIENT_NONE, sph->comm, PETSC_ERR_SUP,
+             "sph_gradient_correction = %s: the cuda backend has none; use sph_type cpu or sph_gradient_correction none",
+             SphGradientTypes[sph->par.gradient]);
+  PetscCheck(sph->par.gradient == SPH_GRADIENT_NONE || sph->par.shifting != SPH_SHIFTING_NONE, sph->comm, PETSC_ERR_ARG_INCOMP,
+             "sph_gradient_correction = %s: needs sph_shifting sun, else nothing keeps the markers in order",
+             SphGradientTypes[sph->par.gradient]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

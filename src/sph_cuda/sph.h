@@ -48,6 +48,11 @@ typedef enum { SPH_DIFFUSION_NONE, SPH_DIFFUSION_MOLTENI, SPH_DIFFUSION_FOURTAKA
   periodic flows, whose markers would cluster or line up.
 */
 typedef enum { SPH_SHIFTING_NONE, SPH_SHIFTING_SUN } SphShiftingType;
+/*
+  Gradients of pressure and velocity in Eqs. 4 and 5: as there, or exact for linear fields (Bonet, Lok 1999) where the support is
+  full, which costs the conservation of momentum.
+*/
+typedef enum { SPH_GRADIENT_NONE, SPH_GRADIENT_BONET } SphGradientType;
 /* sphstep.h; rk2 and symplectic evaluate two right-hand sides per step, verlet one. */
 typedef enum { SPH_INTEGRATOR_RK2, SPH_INTEGRATOR_VERLET, SPH_INTEGRATOR_SYMPLECTIC } SphIntegratorType;
 
@@ -70,6 +75,8 @@ FROND_EXTERN const char *const SphViscosityTypes[];
 FROND_EXTERN const char *const SphDiffusionTypes[];
 /* Names of SphIntegratorType. */
 FROND_EXTERN const char *const SphIntegratorTypes[];
+/* Names of SphGradientType. */
+FROND_EXTERN const char *const SphGradientTypes[];
 /* Names of SphShiftingType. */
 FROND_EXTERN const char *const SphShiftingTypes[];
 
@@ -141,6 +148,12 @@ FROND_EXTERN PetscErrorCode SphSetDensityDiffusion(Sph sph, SphDiffusionType typ
   Source: Sun et al. (2017).
 */
 FROND_EXTERN PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor);
+/*
+  Kernel gradient correction, before SphSetUp(); on the CPU only, and with shifting, since exact gradients do not keep markers in
+  order as Eq. 5 does. type: none (default) or bonet. Source: Bonet, Lok, Comput.
+  Methods Appl. Mech. Eng. 180 (1999).
+*/
+FROND_EXTERN PetscErrorCode SphSetGradientCorrection(Sph sph, SphGradientType type);
 /* Time integrator of the fluid, before SphSetUp(). integrator: rk2 (default), verlet or symplectic; equations in sphstep.h. */
 FROND_EXTERN PetscErrorCode SphSetIntegrator(Sph sph, SphIntegratorType integrator);
 /*

@@ -175,6 +175,7 @@ static PetscErrorCode Rates_CPU(Sph sph)
   PetscCall(PetscLogEventEnd(SPH_Aux, 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(SPH_Rates, 0, 0, 0, 0));
   Sweep(sph, SPH_SWEEP_RATES);
+  if (sph->par.gradient != SPH_GRADIENT_NONE) Sweep(sph, SPH_SWEEP_CORRECT);
   if (sph->par.shifting != SPH_SHIFTING_NONE) Sweep(sph, SPH_SWEEP_SHIFT);
   PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
   sph->evaluations += (PetscReal)(sph->n - sph->left);

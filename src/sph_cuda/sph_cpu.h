@@ -46,10 +46,11 @@ typedef struct {
 
 /* Which sums a sweep over the markers makes. */
 typedef enum {
-  SPH_SWEEP_AUX,   /* Eq. 11 for fluid markers, Adami extrapolation for boundary markers */
-  SPH_SWEEP_RATES, /* Eqs. 4 and 5 */
-  SPH_SWEEP_SHIFT, /* adds the shifting velocity to that of Eq. 11 */
-  SPH_SWEEP_SUM    /* Eq. 9 and its normalisation */
+  SPH_SWEEP_AUX,     /* Eq. 11 for fluid markers, Adami extrapolation for boundary markers */
+  SPH_SWEEP_RATES,   /* Eqs. 4 and 5 */
+  SPH_SWEEP_CORRECT, /* adds the kernel gradient correction to Eqs. 4 and 5 */
+  SPH_SWEEP_SHIFT,   /* adds the shifting velocity to that of Eq. 11 */
+  SPH_SWEEP_SUM      /* Eq. 9 and its normalisation */
 } SphSweep;
 
 /* Fill the prepared quantities from the state; after an auxiliary sweep only what that changed. */

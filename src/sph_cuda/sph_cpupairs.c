@@ -208,6 +208,54 @@ SPH_INLINE void Shift(const int kernel, const Sweep *w, const List *l, int i)
   SPH_VALUES(w->sph->rate.dv[2])[i] += (sphreal)(keep * (double)pz);
 }
 
+/* Exact gradients of linear fields for a fluid marker in place of those of Eqs. 4 and 5; there is shifting, so U is there. */
+SPH_INLINE void Correct(const int kernel, const Sweep *w, const List *l, int i)
+{
+  const SphPairConst c = w->c;
+  const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VX = l->q[SPH_Q_U],
+                          *restrict VY = l->q[SPH_Q_U + 1], *restrict VZ = l->q[SPH_Q_U + 2];
+  const sphreal *restrict S = l->q[SPH_Q_S], *restrict VOL = l->q[SPH_Q_VOL], *restrict P = l->q[SPH_Q_P];
+  const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_U][i], vy = w->q[SPH_Q_U + 1][i],
+                vz = w->q[SPH_Q_U + 2][i];
+  const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i], Pi = w->q[SPH_Q_P][i], p = Pi * rho * rho;
+  sphreal mxx = 0, myy = 0, mzz = 0, mxy = 0, myz = 0, mzx = 0, gx = 0, gy = 0, gz = 0, sx = 0, sy = 0, sz = 0;
+  sphreal txx = 0, txy = 0, txz = 0, tyx = 0, tyy = 0, tyz = 0, tzx = 0, tzy = 0, tzz = 0;
+#pragma omp simd reduction(+ : mxx, myy, mzz, mxy, myz, mzx, gx, gy, gz, sx, sy, sz, txx, txy, txz, tyx, tyy, tyz, tzx, tzy, tzz)
+  for (int j = 0; j < l->n; j++) {
+    const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], r2 = dx * dx + dy * dy + dz * dz;
+    const sphreal F = c.fnorm * sph_f(kernel, SPH_SQRT(r2) * c.hinv), f = VOL[j] * F, rhoj = c.rho0 + c.rho0 * S[j];
+    const sphreal fg = f * (P[j] * rhoj * rhoj - p), fs = sph_pressure(VOL[j] * rhoj, Pi, P[j], F);
+    const sphreal ex = f * (VX[j] - vx), ey = f * (VY[j] - vy), ez = f * (VZ[j] - vz);
+    mxx -= f * dx * dx;
+    myy -= f * dy * dy;
+    mzz -= f * dz * dz;
+    mxy -= f * dx * dy;
+    myz -= f * dy * dz;
+    mzx -= f * dz * dx;
+    gx += fg * dx;
+    gy += fg * dy;
+    gz += fg * dz;
+    sx += fs * dx;
+    sy += fs * dy;
+    sz += fs * dz;
+    txx += ex * dx;
+    txy += ex * dy;
+    txz += ex * dz;
+    tyx += ey * dx;
+    tyy += ey * dy;
+    tyz += ey * dz;
+    tzx += ez * dx;
+    tzy += ez * dy;
+    tzz += ez * dz;
+  }
+  const SphGradientSums sums = {
+      {mxx, myy, mzz, mxy, myz, mzx}, {gx, gy, gz}, {sx, sy, sz}, {txx, txy, txz, tyx, tyy, tyz, tzx, tzy, tzz}};
+  double a[3], div;
+  sph_gradient_correct((int)w->sph->par.dim, (double)rho, &sums, a, &div);
+  for (int k = 0; k < 3; k++) SPH_VALUES(w->sph->rate.a[k])[i] += (sphreal)a[k];
+  SPH_VALUES(w->sph->rate.ds)[i] += (sphreal)((1.0 + w->sph->st.s[i]) * div);
+}
+
 /* Pressure (as density) and velocity of a boundary marker: Adami, Hu, Adams, J. Comput. Phys. 231 (2012), Eqs. 22-27. */
 SPH_INLINE void AuxBoundary(const int kernel, const Sweep *w, const List *l, int i)
 {
@@ -393,6 +441,7 @@ static const Kernel rates[2][3][2][2] = {{SPH_RATES_ROW(0, 0), SPH_RATES_ROW(0, 
   {                                                                                                                              \
     name(1, w, l, i);                                                                                                            \
   }
+SPH_OTHER(Correct)
 SPH_OTHER(AuxFluid)
 SPH_OTHER(Shift)
 SPH_OTHER(AuxBoundary)
@@ -404,13 +453,16 @@ void SPH_NAME(SphCpuSweep)(Sph sph, SphSweep sweep)
   const SphParams *p = &sph->par;
   const SphCpu *cpu = (const SphCpu *)sph->data;
   const SphGrid *g = &cpu->grid;
-  const int ncell = g->n[0] * g->n[1] * g->n[2], nq = sweep == SPH_SWEEP_RATES ? (int)cpu->nq : SPH_NQ_BASE;
+  const int ncell = g->n[0] * g->n[1] * g->n[2],
+            nq = sweep == SPH_SWEEP_RATES || sweep == SPH_SWEEP_CORRECT ? (int)cpu->nq : SPH_NQ_BASE;
   Kernel fluid = NULL, boundary = NULL;
   Sweep w = {.c = sph_pair_const(p), .sph = sph, .cpu = cpu};
 
   Pointers(cpu, w.q, w.box);
   if (sweep == SPH_SWEEP_RATES)
     fluid = boundary = rates[p->kernel][p->viscosity][SphTwoVelocities(p)][p->diffusion != SPH_DIFFUSION_NONE];
+  else if (sweep == SPH_SWEEP_CORRECT)
+    fluid = p->kernel ? Correct_1 : Correct_0;
   else if (sweep == SPH_SWEEP_SHIFT)
     fluid = p->kernel ? Shift_1 : Shift_0;
   else if (sweep == SPH_SWEEP_SUM)

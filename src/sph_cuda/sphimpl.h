@@ -48,6 +48,7 @@ typedef struct {
   int integrator;        /* SphIntegratorType */
   int shifting;          /* SphShiftingType */
   PetscReal shiftfactor; /* - */
+  int gradient;          /* SphGradientType */
 } SphParams;
 
 /* One array per component, n long. */

@@ -16,6 +16,7 @@ const char *const SphViscosityTypes[] = {"eq6", "morris", "artificial", "SphVisc
 const char *const SphDiffusionTypes[] = {"none", "molteni", "fourtakas", "SphDiffusionType", "SPH_DIFFUSION_", NULL};
 const char *const SphIntegratorTypes[] = {"rk2", "verlet", "symplectic", "SphIntegratorType", "SPH_INTEGRATOR_", NULL};
 const char *const SphSlipTypes[] = {"none", "free", "SphSlipType", "SPH_SLIP_", NULL};
+const char *const SphGradientTypes[] = {"none", "bonet", "SphGradientType", "SPH_GRADIENT_", NULL};
 const char *const SphShiftingTypes[] = {"none", "sun", "SphShiftingType", "SPH_SHIFTING_", NULL};
 
 static PetscErrorCode CheckEditable(Sph sph, const char *name)
@@ -229,6 +230,14 @@ PetscErrorCode SphSetShifting(Sph sph, SphShiftingType type, PetscReal factor)
   PetscCall(CheckRange(sph, "shifting_factor", factor, 0.0, 5.0));
   sph->par.shifting = (int)type;
   sph->par.shiftfactor = factor;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SphSetGradientCorrection(Sph sph, SphGradientType type)
+{
+  PetscFunctionBegin;
+  PetscCall(CheckEditable(sph, "gradient_correction"));
+  sph->par.gradient = (int)type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -453,6 +462,9 @@ static PetscErrorCode OptionsForms(Sph sph, SphOptionItems PetscOptionsObject)
                              "SphSetShifting", SphShiftingTypes, e, &e, &set));
   PetscCall(PetscOptionsReal("-sph_shifting_factor", "Factor of the shifting velocity", "SphSetShifting", r, &r, &set2));
   if (set || set2) PetscCall(SphSetShifting(sph, (SphShiftingType)e, r));
+  PetscCall(PetscOptionsEnum("-sph_gradient_correction", "Gradients exact for linear fields; momentum is then not conserved",
+                             "SphSetGradientCorrection", SphGradientTypes, (PetscEnum)p->gradient, &e, &set));
+  if (set) PetscCall(SphSetGradientCorrection(sph, (SphGradientType)e));
   PetscCall(PetscOptionsEnum("-sph_slip", "Slip along boundary markers: none, or free (no friction; sph_wall adami)",
                              "SphSetSlip", SphSlipTypes, (PetscEnum)p->slip, &e, &set));
   if (set) PetscCall(SphSetSlip(sph, (SphSlipType)e));
@@ -504,6 +516,7 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_shifting %s, sph_shifting_factor %g, sph_slip %s, sph_dt_min %g s\n",
                                    SphShiftingTypes[p->shifting], (double)p->shiftfactor, SphSlipTypes[p->slip],
                                    (double)p->dtmin));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_gradient_correction %s\n", SphGradientTypes[p->gradient]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));
   if (sph->nforce)
