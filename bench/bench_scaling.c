@@ -9,8 +9,8 @@
     bench_scaling -experiment rigid   spheres 0 ... 10 000 in 3e6 markers      (Fig. 9a)
     bench_scaling -experiment size    0.2e6 ... 3e6 markers, a sphere per 1000  (Fig. 9b)
     bench_scaling -experiment beams   cantilevers 0 ... 10 000 in 1.5e6 markers (Fig. 10)
-  Smaller by one option: -markers 1e5 (counts that do not fit are left out). Also: -steps, -csv file (for bench/plot_scaling.py),
-  and every option of the solvers, as -sph_type.
+  Smaller by one option: -markers 1e5 (counts that do not fit are left out). Also: -steps, -bodies 100,10000 (other counts), -csv
+  file (for bench/plot_scaling.py), and every option of the solvers, as -sph_type.
 */
 #include "couple.h"
 #include "sphfill.h"
@@ -257,7 +257,8 @@ static void Cube(Layout *l, double markers)
 
 static PetscErrorCode Experiment(const char *name, double markers, PetscInt steps, FILE *csv)
 {
-  static const PetscInt counts[] = {0, 10, 100, 1000, 3000, 10000};
+  PetscInt counts[16] = {0, 10, 100, 1000, 3000, 10000}, ncounts = 16;
+  PetscBool given;
   const int size = !strcmp(name, "size"), beams = !strcmp(name, "beams");
   double first = 0.0;
 
@@ -275,7 +276,9 @@ static PetscErrorCode Experiment(const char *name, double markers, PetscInt step
   for (int k = 0; k < NPARTS; k++)
     PetscCall(PetscPrintf(PETSC_COMM_SELF, " %9.9s", strncmp(parts[k], "Sph", 3) ? parts[k] + 6 : parts[k] + 3));
   PetscCall(PetscPrintf(PETSC_COMM_SELF, "\n"));
-  for (size_t k = 0; k < sizeof(counts) / sizeof(counts[0]); k++) {
+  PetscCall(PetscOptionsGetIntArray(NULL, NULL, "-bodies", counts, &ncounts, &given));
+  if (!given || size) ncounts = 6;
+  for (PetscInt k = 0; k < ncounts; k++) {
     Layout l = {.count = counts[k], .beams = beams};
     Cube(&l, size ? markers * PetscSqr((double)k + 1.0) / 36.0 : markers);
     if (size) l.count = (l.n[0] * l.n[1] * l.n[2]) / 1000;

@@ -2,6 +2,7 @@ frond_test(test_couple_transfer SOURCES test_couple_transfer.c LABELS unit)
 frond_test(test_couple_short SOURCES test_couple_short.c LABELS unit validation)
 frond_test(test_couple_hydrostatic SOURCES test_couple_hydrostatic.c LABELS validation)
 frond_test(test_couple_attach SOURCES test_couple_attach.c LABELS unit TIMEOUT 120)
+frond_test(test_couple_many SOURCES test_couple_many.c LABELS unit LIBS OpenMP::OpenMP_C)
 frond_test(test_couple_momentum SOURCES test_couple_momentum.c LABELS unit LIBS OpenMP::OpenMP_C)
 
 find_program(FROND_TEST_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)

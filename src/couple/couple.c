@@ -82,6 +82,7 @@ PetscErrorCode CoupleAddSurface(Couple c, CoupleSurface surface)
     c->slot = slot;
   }
   surface->refct++;
+  if (surface->prepare) c->nshared++;
   c->slot[c->n++].surface = surface;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -127,22 +128,53 @@ PetscErrorCode CoupleSetFromOptions(Couple c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
+/* Where the surface is going to be, for the fluid to be told. */
+static PetscErrorCode MoveSlot(Couple c, CoupleSlot *s, PetscReal ahead)
 {
   PetscFunctionBegin;
+  if (s->linked) {
+    PetscCall((*s->surface->ops.linkstate)(s->surface, ahead, s->state));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CoupleMoveSlot(c, s, ahead));
+  if (s->w) PetscCall((*s->surface->ops.rotation)(s->surface, s->w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TellSlot(Couple c, CoupleSlot *s, PetscReal unused)
+{
+  PetscFunctionBegin;
+  (void)unused;
+  if (s->linked) {
+    PetscCall(SphSetGroupState(c->sph, s->group, s->state));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SphSetBoundaryMotion(c->sph, s->group, s->x, s->v, s->a));
+  if (s->w) PetscCall(SphSetBoundaryRotation(c->sph, s->group, s->w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MoveAndTell(Couple c, CoupleSlot *s, PetscReal ahead)
+{
+  PetscFunctionBegin;
+  PetscCall(MoveSlot(c, s, ahead));
+  if (c->tellable && !s->linked) PetscCall(TellSlot(c, s, ahead));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleMoveMarkers(Couple c, PetscReal ahead)
+{
+  const PetscBool share = ahead >= 0.0 ? PETSC_TRUE : PETSC_FALSE; /* back within a step takes c->work */
+
+  PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Kinematics, 0, 0, 0, 0));
+  PetscCall(CouplePrepare(c));
+  if (share) PetscCall(CoupleShare(c, MoveAndTell, ahead));
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
-    if (s->linked) {
-      PetscCall((*s->surface->ops.linkstate)(s->surface, ahead, s->state));
-      PetscCall(SphSetGroupState(c->sph, s->group, s->state));
-      continue;
-    }
-    PetscCall(CoupleMoveSlot(c, s, ahead));
-    PetscCall(SphSetBoundaryMotion(c->sph, s->group, s->x, s->v, s->a));
-    if (!s->w) continue;
-    PetscCall((*s->surface->ops.rotation)(s->surface, s->w));
-    PetscCall(SphSetBoundaryRotation(c->sph, s->group, s->w));
+    const PetscBool moved = share ? CoupleShares(c, s) : PETSC_FALSE;
+    if (!moved) PetscCall(MoveSlot(c, s, ahead));
+    if (!moved || !c->tellable || s->linked) PetscCall(TellSlot(c, s, ahead));
   }
   PetscCall(PetscLogEventEnd(COUPLE_Kinematics, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -169,6 +201,8 @@ PetscErrorCode CoupleSetUp(Couple c)
     PetscCall(SphAddBoundary(c->sph, s->n, s->x, s->v, volume, depth, &s->group));
   }
   PetscCall(CoupleLinkSetUp(c));
+  PetscCall(SphGetResident(c->sph, &c->tellable));
+  c->tellable = (PetscBool)!c->tellable;
   PetscCall(PetscMalloc1(3 * (size_t)most, &c->work));
   PetscCall(SphSetUp(c->sph));
   PetscCall(CoupleMoveMarkers(c, 0.0));
@@ -227,6 +261,28 @@ static void MarkerTotals(const CoupleSlot *s, CoupleAudit *audit)
   }
 }
 
+static PetscErrorCode TransferSlot(Couple c, CoupleSlot *s, PetscReal h)
+{
+  CoupleAudit audit = {0};
+
+  PetscFunctionBegin;
+  (void)c;
+  (void)h;
+  if (s->linked) {
+    for (int k = 0; k < 3; k++) {
+      audit.force[k] = s->totals.force[k];
+      audit.moment[k] = s->totals.moment[k];
+    }
+    audit.power = s->totals.power;
+    PetscCall((*s->surface->ops.applyloads)(s->surface, s->load, &s->totals, &audit));
+  } else {
+    MarkerTotals(s, &audit);
+    PetscCall((*s->surface->ops.applyforces)(s->surface, s->f, &audit));
+  }
+  s->audit = audit;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Marker forces in s->f and short-range forces to every structure for a step h (s); s->x, s->v still hold the marker state that
    the marker forces act on. */
 static PetscErrorCode Transfer(Couple c, PetscReal h)
@@ -234,25 +290,21 @@ static PetscErrorCode Transfer(Couple c, PetscReal h)
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Transfer, 0, 0, 0, 0));
   for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.zeroloads)(c->slot[i].surface));
-  for (PetscInt i = 0; i < c->n; i++) {
-    CoupleSlot *s = &c->slot[i];
-    CoupleAudit audit = {0};
-    if (s->linked) {
-      for (int k = 0; k < 3; k++) {
-        audit.force[k] = s->totals.force[k];
-        audit.moment[k] = s->totals.moment[k];
-      }
-      audit.power = s->totals.power;
-      PetscCall((*s->surface->ops.applyloads)(s->surface, s->load, &s->totals, &audit));
-    } else {
-      MarkerTotals(s, &audit);
-      PetscCall((*s->surface->ops.applyforces)(s->surface, s->f, &audit));
-    }
-    s->audit = audit;
-  }
+  PetscCall(CoupleShare(c, TransferSlot, h));
+  for (PetscInt i = 0; i < c->n; i++)
+    if (!CoupleShares(c, &c->slot[i])) PetscCall(TransferSlot(c, &c->slot[i], h));
   if (c->shortrange) PetscCall(CoupleShortApply(c->shortrange, h));
   PetscCall(CoupleLoadsChange(c));
   PetscCall(PetscLogEventEnd(COUPLE_Transfer, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The fluid's forces on a surface that takes them marker by marker and lets threads ask. */
+static PetscErrorCode ForceSlot(Couple c, CoupleSlot *s, PetscReal unused)
+{
+  PetscFunctionBegin;
+  (void)unused;
+  if (!s->linked) PetscCall(SphGetBoundaryForce(c->sph, s->group, s->f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -260,8 +312,10 @@ static PetscErrorCode Transfer(Couple c, PetscReal h)
 PetscErrorCode CoupleApplyForces(Couple c, PetscReal h, const PetscReal *f)
 {
   PetscFunctionBegin;
+  if (!f && c->tellable) PetscCall(CoupleShare(c, ForceSlot, 0.0));
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
+    if (!f && c->tellable && !s->linked && CoupleShares(c, s)) continue;
     if (s->linked)
       PetscCall(SphGetGroupLoad(c->sph, s->group, s->load, &s->totals));
     else if (f && !s->surface->held) {
@@ -274,12 +328,27 @@ PetscErrorCode CoupleApplyForces(Couple c, PetscReal h, const PetscReal *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode SettleSlot(Couple c, CoupleSlot *s, PetscReal t)
+{
+  PetscFunctionBegin;
+  (void)c;
+  (void)t;
+  if (s->surface->unsettled) PetscCall((*s->surface->settle)(s->surface));
+  s->surface->unsettled = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CoupleAdvanceSurfaces(Couple c, PetscReal t)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(COUPLE_Advance, 0, 0, 0, 0));
   if (c->attach) PetscCall(CoupleAttachAdvance(c->attach, t)); /* the surfaces then find their solvers at t */
-  for (PetscInt i = 0; i < c->n; i++) PetscCall((*c->slot[i].surface->ops.advance)(c->slot[i].surface, t));
+  for (PetscInt i = 0; i < c->n; i++) {
+    CoupleSurface surface = c->slot[i].surface;
+    surface->unsettled = (PetscBool)(surface->settle && CoupleShares(c, &c->slot[i]));
+    PetscCall((*surface->ops.advance)(surface, t));
+  }
+  PetscCall(CoupleShare(c, SettleSlot, t));
   if (c->shortrange) PetscCall(CoupleShortRemove(c->shortrange));
   PetscCall(PetscLogEventEnd(COUPLE_Advance, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

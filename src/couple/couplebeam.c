@@ -248,6 +248,7 @@ static PetscErrorCode CreateSurface(Beam *b, const AncfBeamSpec *spec, PetscInt 
       (CoupleHostSpec){dim, nn, r.direction, nd, r.rowstart, r.node, r.shape, r.slope, n, r.section, r.offset, r.volume, r.depth};
   PetscCall(PetscSNPrintf(name, sizeof(name), "beam_%" PetscInt_FMT, b->beam));
   PetscCall(CoupleSurfaceCreateHost(PETSC_COMM_SELF, name, &host, &ops, b, surface));
+  PetscCall(CoupleHostShare(*surface));
   PetscCall(PetscFree4(r.rowstart, r.node, r.section, r.direction));
   PetscCall(PetscFree5(r.shape, r.slope, r.offset, r.volume, r.depth));
   PetscFunctionReturn(PETSC_SUCCESS);

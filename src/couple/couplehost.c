@@ -139,7 +139,8 @@ static PetscErrorCode GiveLoads(Host *h, const PetscReal axial[3], CoupleAudit *
 
   PetscFunctionBegin;
   Audit(h, h->Q, axial, audit);
-  PetscCall(GetLoads(h, &Q));
+  Q = h->loads; /* as zeroloads got it */
+  if (!Q) PetscCall(GetLoads(h, &Q));
   if (Q != h->Q)
     for (PetscInt j = 0; j < 3 * h->nnodes; j++) Q[j] += h->Q[j];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -228,8 +229,9 @@ static PetscErrorCode ApplyLoads_Host(CoupleSurface surface, const PetscReal *lo
 }
 
 /* The normals of the sections carried along to the structure's present state. */
-static PetscErrorCode CarryNormals(Host *h)
+static PetscErrorCode CarryNormals(CoupleSurface surface)
 {
+  Host *h = (Host *)surface->ctx;
   const PetscReal *q, *v;
 
   PetscFunctionBegin;
@@ -245,6 +247,17 @@ static PetscErrorCode CarryNormals(Host *h)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A host whose state is current serves several threads. */
+static PetscErrorCode Prepare_Host(CoupleSurface surface)
+{
+  const Host *h = (const Host *)surface->ctx;
+  const PetscReal *q, *v, *a;
+
+  PetscFunctionBegin;
+  PetscCall((*h->ops.getstate)(h->ctx, NULL, &q, &v, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Advance_Host(CoupleSurface surface, PetscReal t)
 {
   Host *h = (Host *)surface->ctx;
@@ -256,7 +269,7 @@ static PetscErrorCode Advance_Host(CoupleSurface surface, PetscReal t)
   PetscCall((*h->ops.getstate)(h->ctx, &now, NULL, NULL, NULL));
   PetscCheck(PetscAbsReal(now - t) <= 1e-12 * PetscMax(1.0, PetscAbsReal(t)), surface->comm, PETSC_ERR_USER,
              "surface %s: the host advanced to t = %.15g s when asked for %.15g s", surface->name, (double)now, (double)t);
-  PetscCall(CarryNormals(h));
+  if (!surface->unsettled) PetscCall(CarryNormals(surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -448,6 +461,14 @@ static PetscErrorCode PlaceMarkers(CoupleSurface surface)
   PetscCall(PetscMalloc2(3 * (size_t)h->n, &v, 3 * (size_t)h->n, &a));
   PetscCall(Kinematics_Host(surface, 0.0, h->x0, v, a));
   PetscCall(PetscFree2(v, a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleHostShare(CoupleSurface surface)
+{
+  PetscFunctionBegin;
+  surface->prepare = Prepare_Host;
+  surface->settle = CarryNormals;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,6 +11,11 @@ struct _p_CoupleSurface {
   void *ctx;
   PetscBool held;
   PetscInt refct;
+  /* Surfaces whose kinematics, rotation, linkstate, applyforces and applyloads may be called for several of them by different
+     threads, once prepare was called for each (it makes current what they share); the others have no prepare. */
+  PetscErrorCode (*prepare)(CoupleSurface);
+  PetscErrorCode (*settle)(CoupleSurface); /* what is left of advance when `unsettled` is set; also by different threads */
+  PetscBool unsettled;
 };
 
 typedef struct {
@@ -33,10 +38,10 @@ struct _p_Couple {
   Sph sph;
   CoupleAttach attach; /* NULL without */
   CoupleSlot *slot;
-  PetscInt n, cap;
+  PetscInt n, cap, nshared; /* surfaces; room; of them with prepare */
   PetscReal dtmax;
   CoupleTransferType transfer;
-  PetscBool setup;
+  PetscBool setup, tellable; /* tellable: the fluid takes motions from several threads */
   PetscInt maxiterations, iterations,
       unconverged; /* of the strong coupling: allowed per step; made; steps that missed the tolerance */
   PetscReal tolerance, relaxation;
@@ -61,6 +66,17 @@ extern PetscErrorCode CoupleMoveMarkers(Couple couple, PetscReal ahead);
    structure to time t. */
 extern PetscErrorCode CoupleApplyForces(Couple couple, PetscReal h, const PetscReal *f);
 extern PetscErrorCode CoupleAdvanceSurfaces(Couple couple, PetscReal t);
+
+/* couplehost.c: the host is one of ours, and can serve several threads. */
+extern PetscErrorCode CoupleHostShare(CoupleSurface surface);
+/*
+  couplethreads.c: share the surfaces that can be among threads, in a function for one of them; the others wait for the caller.
+  The decision does not depend on the number of threads.
+*/
+typedef PetscErrorCode (*CoupleSlotWork)(Couple couple, CoupleSlot *slot, PetscReal number);
+extern PetscBool CoupleShares(Couple couple, const CoupleSlot *slot);
+extern PetscErrorCode CoupleShare(Couple couple, CoupleSlotWork work, PetscReal number);
+extern PetscErrorCode CouplePrepare(Couple couple);
 
 /* couplelink.c */
 extern PetscErrorCode CoupleLinkSetUp(Couple couple);

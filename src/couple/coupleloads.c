@@ -31,16 +31,36 @@ PetscErrorCode CoupleSetLoads(Couple c, CoupleLoads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode BeginSlot(Couple c, CoupleSlot *s, PetscReal dt)
+{
+  PetscFunctionBegin;
+  (void)c;
+  (void)dt;
+  if (s->surface->held || s->linked) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(s->flast, s->f, 3 * s->n));
+  PetscCall(PetscArraycpy(s->vstart, s->v, 3 * s->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EndSlot(Couple c, CoupleSlot *s, PetscReal dt)
+{
+  PetscFunctionBegin;
+  (void)c;
+  if (s->surface->held || s->linked) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < 3 * s->n; j++) {
+    s->alast[1][j] = s->alast[0][j];
+    s->alast[0][j] = (s->v[j] - s->vstart[j]) / dt;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CoupleLoadsBegin(Couple c, PetscReal dt)
 {
   PetscFunctionBegin;
   c->dt = dt;
-  for (PetscInt i = 0; i < c->n; i++) {
-    CoupleSlot *s = &c->slot[i];
-    if (s->surface->held || s->linked) continue;
-    PetscCall(PetscArraycpy(s->flast, s->f, 3 * s->n));
-    PetscCall(PetscArraycpy(s->vstart, s->v, 3 * s->n));
-  }
+  PetscCall(CoupleShare(c, BeginSlot, dt));
+  for (PetscInt i = 0; i < c->n; i++)
+    if (!CoupleShares(c, &c->slot[i])) PetscCall(BeginSlot(c, &c->slot[i], dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,15 +69,11 @@ PetscErrorCode CoupleLoadsEnd(Couple c)
   PetscReal dt = c->dt;
 
   PetscFunctionBegin;
+  PetscCall(CoupleShare(c, EndSlot, c->dt));
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
-    if (s->surface->held) continue;
-    if (s->linked) {
-      dt = 0.0; /* no history of the markers that the fluid moves by itself */
-      continue;
-    }
-    PetscCall(PetscArraycpy(s->alast[1], s->alast[0], 3 * s->n));
-    for (PetscInt j = 0; j < 3 * s->n; j++) s->alast[0][j] = (s->v[j] - s->vstart[j]) / c->dt;
+    if (!CoupleShares(c, s)) PetscCall(EndSlot(c, s, c->dt));
+    if (s->linked && !s->surface->held) dt = 0.0; /* no history of the markers that the fluid moves by itself */
   }
   c->dtlast[1] = c->dtlast[0];
   c->dtlast[0] = dt;

@@ -2,6 +2,9 @@
 #include "sphimpl.h"
 #include "sphlink.h"
 #include <math.h>
+#if defined(_OPENMP)
+  #include <omp.h>
+#endif
 
 PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output;
 
@@ -370,14 +373,20 @@ PetscErrorCode SphStepEnd(Sph sph)
 
 PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v, const PetscReal *a)
 {
+#if defined(_OPENMP)
+  const PetscBool alone = omp_in_parallel() ? PETSC_FALSE : PETSC_TRUE; /* the log belongs to one thread */
+#else
+  const PetscBool alone = PETSC_TRUE;
+#endif
+
   PetscFunctionBegin;
   PetscCheck(group >= 0 && group < sph->ngroups, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "boundary group %" PetscInt_FMT ": must be in [0, %" PetscInt_FMT ")", group, sph->ngroups);
   PetscCheck(!SphIsLinked(sph, group), sph->comm, PETSC_ERR_ORDER,
              "boundary group %" PetscInt_FMT " is linked: SphSetGroupState() moves it", group);
-  PetscCall(PetscLogEventBegin(SPH_Motion, 0, 0, 0, 0));
+  if (alone) PetscCall(PetscLogEventBegin(SPH_Motion, 0, 0, 0, 0));
   PetscCall((*sph->ops->motion)(sph, group, x, v, a));
-  PetscCall(PetscLogEventEnd(SPH_Motion, 0, 0, 0, 0));
+  if (alone) PetscCall(PetscLogEventEnd(SPH_Motion, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -263,7 +263,7 @@ FROND_EXTERN PetscErrorCode SphGetTime(Sph sph, PetscReal *t, PetscInt *step);
 
 /*
   State of a group's markers, in the order of SphAddBoundary(). group: as SphAddBoundary() gave it. x: n x 3, m. v: n x 3,
-  m/s. a: n x 3, m/s^2, or NULL for 0.
+  m/s. a: n x 3, m/s^2, or NULL for 0. On the CPU different groups may be set by different threads at once.
 */
 FROND_EXTERN PetscErrorCode SphSetBoundaryMotion(Sph sph, PetscInt group, const PetscReal *x, const PetscReal *v,
                                                  const PetscReal *a);
