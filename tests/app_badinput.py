@@ -1,5 +1,6 @@
 """Wrong input to the frond command: one line that names the field, its value and the rule, and an exit code that is not 0."""
 import os
+import resource
 import sys
 
 import apptest
@@ -169,4 +170,31 @@ frond.refuses(["run", "small.yaml", "small.yaml"], ["small.yaml", "neither an op
 
 left = [n for n in os.listdir(frond.folder) if n.startswith("out_")]
 apptest.check(not left, "refused runs left folders behind: %s" % left)
+# 10^12 of anything: a clear answer, that of the count and not of the memory; it takes 0.2 s of processor time,
+# 10 s are allowed (sanitizers, a busy machine).
+small = apptest.SCENE.replace("domain_periodic: [x, y]", "").replace("walls: [zmin, zmax]", "")
+frond.write("open.yaml", small)
+frond.write("dry.yaml", small + "fluid: false\ntime_step: 1e-3\n")
+WIDE = ["-domain_hi", "1e5,1e5,1e5", "-fluid_hi", "0.4,0.4,0.4"]
+for scene, args, words in (
+    ("open", ["-sph_dp", "4e-5"], ["sph_dp", r"1e\+12 markers", "fewer than"]),
+    ("open", ["-domain_hi", "1e5,1e5,1e5"], ["sph_dp", "markers", "fewer than"]),
+    ("open", [*WIDE, "-walls", "zmin"], ["box", "lattice sites", "larger sph_dp"]),
+    ("open", [*WIDE, "-body_ball_shape", "box", "-body_ball_size", "2e4,2e4,2e4"], ["20000", "markers", "fewer than 1e8"]),
+    ("open", [*WIDE, "-body_ball_shape", "cylinder", "-body_ball_size", "2e4,2e4,0"], ["20000", "markers", "fewer than 1e8"]),
+    ("open", ["-grids", "g", "-grid_g_spacing", "4e-5"], ["grid_g_spacing", "points"]),
+    ("open", ["-probes", "q", "-probe_q_type", "plane", "-probe_q_position", "0.1,0.1,0.1", "-probe_q_edge1", "4e4,0,0", "-probe_q_edge2", "0,4e4,0"], ["q", "points|too|must|larger"]),
+    ("dry", ["-beam_rod_elements", "2000000000"], ["rod", "elements", "fewer than 5e7"]),
+    ("dry", ["-beam_rod_elements", "1000000000000"], ["beam_rod_elements", "too large"]),
+    ("dry", ["-beam_rod_type", "lumped", "-beam_rod_trunks", "2000000000"], ["beam_rod_trunks", "1e6"]),
+    ("dry", ["-rigid_contact_modulus", "1e6", "-rigid_roughness", "1e-3", "-body_ball_shape", "box", "-body_ball_size", "0.1,0.1,0.1", "-rigid_shortrange_spacing", "1e-7"],
+     ["box", "markers", "fewer than 1e8"]),
+    ("dry", ["-rigid_contact_modulus", "1e6", "-rigid_roughness", "1e-3", "-couple_shortrange_samples", "1000000000"], ["couple_shortrange_samples", "64"]),
+):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    frond.refuses(["check", scene + ".yaml", *args], words)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    apptest.check(spent < 10, "%s %s: the answer took %.3g s of processor time" % (scene, args, spent))
+
 apptest.report()

@@ -105,6 +105,9 @@ PetscErrorCode AncfAddBeam(Ancf ancf, const AncfBeamSpec *spec, PetscInt *number
              "AncfAddBeam: beams cannot be added or changed after AncfSetUp()");
   PetscCheck(spec->elements >= 1, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "Beam %" PetscInt_FMT ": elements = %" PetscInt_FMT " must be at least 1", ancf->nbeams, spec->elements);
+  PetscCheck((double)ancf->nnodes + (double)spec->elements < 5e7, ancf->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Beam %" PetscInt_FMT ": elements = %" PetscInt_FMT " makes %.3g nodes of all beams; must be fewer than 5e7",
+             ancf->nbeams, spec->elements, (double)ancf->nnodes + (double)spec->elements + 1);
   PetscCall(AncfCheckVector(ancf, "start", spec->start));
   PetscCall(AncfCheckVector(ancf, "end", spec->end));
   PetscCall(AncfCheckVector(ancf, "velocity", spec->velocity));

@@ -51,8 +51,9 @@ static PetscErrorCode lumped_from_beam(const SceneBeam *beam, SceneLumped *lumpe
   PetscCheck(from->inner == 0 && from->width == 0 && from->thickness == 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
              "beam_%s_inner = %g m, width = %g m, thickness = %g m: a lumped beam takes a diameter, or EI and rhoA", beam->name,
              (double)from->inner, (double)from->width, (double)from->thickness);
-  PetscCheck(spec->trunks >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "beam_%s_trunks = %" PetscInt_FMT " must be 1 or more (0: as many as elements)", beam->name, spec->trunks);
+  PetscCheck(spec->trunks >= 0 && PetscMax(spec->trunks, from->elements) <= 1000000, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "beam_%s_trunks = %" PetscInt_FMT " must be 1 to 1e6 (0: as many as elements)", beam->name,
+             spec->trunks ? spec->trunks : from->elements);
   PetscCall(PetscStrncpy(lumped->name, beam->name, APP_NAME_LEN));
   PetscCall(PetscArraycpy(spec->start, from->start, 3));
   PetscCall(PetscArraycpy(spec->end, from->end, 3));

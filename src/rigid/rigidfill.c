@@ -343,6 +343,7 @@ PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscRe
 
   PetscFunctionBegin;
   PetscCall(FillCheck(spec, dim, dp, depthmax));
+  PetscCall(RigidCheckCount(spec, dim, dp, depthmax));
   PetscCall(RigidRegisterEvents());
   PetscCall(PetscLogEventBegin(RIGID_Fill, 0, 0, 0, 0));
   for (PetscInt k = RigidShapeNumSizes(spec->shape, dim); k < 3; k++) flat.size[k] = 0.;

@@ -119,6 +119,7 @@ extern PetscErrorCode RigidSystemHasBody(Rigid rigid, PetscInt i, PetscBool *has
 /* rigidsurface.c */
 extern PetscBool RigidShapeNormal(const RigidBodySpec *s, PetscInt dim, const PetscReal x[3], PetscReal step, PetscReal n[3]);
 extern PetscErrorCode RigidSurfacePoints(const RigidBodySpec *s, PetscInt dim, PetscReal spacing, RigidMarkers *m);
+extern PetscErrorCode RigidCheckCount(const RigidBodySpec *s, PetscInt dim, PetscReal spacing, PetscReal depth);
 
 /* rigidcontact.c */
 extern PetscErrorCode RigidContactSetUp(Rigid rigid);

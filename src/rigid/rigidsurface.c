@@ -113,10 +113,40 @@ static PetscErrorCode CompositeSurface(RigidGeometry g, PetscReal spacing, Rigid
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sides of a box that holds the shape, m. */
+static void Extents(const RigidBodySpec *s, PetscReal e[3])
+{
+  const PetscReal *a = s->size;
+  for (int k = 0; k < 3; k++) {
+    if (s->geometry)
+      e[k] = s->geometry->hi[k] - s->geometry->lo[k];
+    else
+      e[k] = s->shape == RIGID_BOX ? a[k] : 2. * (s->shape == RIGID_ELLIPSOID ? a[k] : a[0]);
+  }
+  if (s->shape == RIGID_CYLINDER || s->shape == RIGID_CAPSULE) e[2] = a[1] + (s->shape == RIGID_CAPSULE ? 2. * a[0] : 0.);
+}
+
+/* Before any memory is taken: about how many markers lie to a depth (m) below the surface; fewer than 10^8 are. */
+PetscErrorCode RigidCheckCount(const RigidBodySpec *s, PetscInt dim, PetscReal spacing, PetscReal depth)
+{
+  PetscReal e[3], area, volume, count;
+
+  PetscFunctionBegin;
+  Extents(s, e);
+  area = dim == 2 ? 2. * (e[0] + e[1]) : 2. * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]);
+  volume = dim == 2 ? e[0] * e[1] : e[0] * e[1] * e[2];
+  count = PetscMin(volume, area * depth) / PetscPowRealInt(spacing, (int)dim);
+  PetscCheck(!(count >= 1.e8), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "a %s of %g x %g x %g m takes about %.2g markers %g m apart; must be fewer than 1e8", RigidShapeName(s->shape),
+             (double)e[0], (double)e[1], (double)e[2], (double)count, (double)spacing);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Appends points in the body frame to m->x. */
 PetscErrorCode RigidSurfacePoints(const RigidBodySpec *s, PetscInt dim, PetscReal spacing, RigidMarkers *m)
 {
   PetscFunctionBegin;
+  PetscCall(RigidCheckCount(s, dim, spacing, spacing));
   if (s->shape == RIGID_BOX)
     PetscCall(BoxSurface(s, dim, spacing, m));
   else if (dim == 2 && (s->shape == RIGID_SPHERE || s->shape == RIGID_CYLINDER))
