@@ -160,6 +160,7 @@ extern PetscLogEvent ANCF_Advance, ANCF_Force, ANCF_Tangent, ANCF_MassSolve;
 #define ANCF_DEFAULT_AXIAL 3
 #define ANCF_DEFAULT_BENDING 3
 #define ANCF_DEFAULT_RADIUS 0.8
+#define ANCF_PIECE 1536    /* numbers of a vector that are summed as one */
 #define ANCF_PARALLEL 64   /* batches of beams, from which on they are shared out among threads */
 #define ANCF_MAX_HALVES 14 /* of a step that Newton's method fails in */
 #define ANCF_DEFAULT_GROUP 16000
@@ -333,6 +334,9 @@ extern PetscErrorCode AncfAlphaPreStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaPostStep(Ancf ancf);
 extern PetscErrorCode AncfAlphaStart(Ancf ancf, PetscReal dt);
 extern PetscErrorCode AncfAlphaFunction(Ancf ancf, const PetscReal *a, PetscReal *f);
+
+/* ancfsearch.c: makes a shell line search of the TS the one of the beams; nothing happens to those of other types. */
+extern PetscErrorCode AncfSetFullStep(Ancf ancf);
 
 /* ancfstage.c */
 extern PetscErrorCode AncfStageSetUp(Ancf ancf);
