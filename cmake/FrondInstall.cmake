@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 install(TARGETS frond EXPORT FrondTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS frond_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES src/frondsys.h src/frondstate.h src/sph_cuda/sph.h src/sph_cuda/sphfill.h src/sph_cuda/sphlink.h src/ancf_petsc/ancf.h src/rigid/rigid.h src/rigid/shortrange.h
+install(FILES src/frondsys.h src/frondstate.h src/sph_cuda/sph.h src/sph_cuda/sphfill.h src/sph_cuda/sphlink.h src/sph_cuda/sphopen.h src/ancf_petsc/ancf.h src/rigid/rigid.h src/rigid/shortrange.h
   src/couple/couple.h src/couple/couplehost.h src/plugin/frondscene.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/frond)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -5,7 +5,7 @@ find_program(FROND_DOXYGEN doxygen)
 find_program(FROND_DOC_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(FROND_DOXYGEN AND FROND_DOC_PYTHON)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/frondsys.h ${PROJECT_SOURCE_DIR}/src/plugin/frondscene.h
-    ${PROJECT_SOURCE_DIR}/src/sph_cuda/sph.h ${PROJECT_SOURCE_DIR}/src/sph_cuda/sphfill.h ${PROJECT_SOURCE_DIR}/src/sph_cuda/sphlink.h ${PROJECT_SOURCE_DIR}/src/ancf_petsc/ancf.h
+    ${PROJECT_SOURCE_DIR}/src/sph_cuda/sph.h ${PROJECT_SOURCE_DIR}/src/sph_cuda/sphfill.h ${PROJECT_SOURCE_DIR}/src/sph_cuda/sphlink.h ${PROJECT_SOURCE_DIR}/src/sph_cuda/sphopen.h ${PROJECT_SOURCE_DIR}/src/ancf_petsc/ancf.h
     ${PROJECT_SOURCE_DIR}/src/ancf_petsc/blocktri.h ${PROJECT_SOURCE_DIR}/src/rigid/rigid.h ${PROJECT_SOURCE_DIR}/src/rigid/shortrange.h
     ${PROJECT_SOURCE_DIR}/src/couple/couple.h ${PROJECT_SOURCE_DIR}/src/couple/couplehost.h)
   list(JOIN headers " " header_words)

@@ -21,6 +21,8 @@ TITLES = [
     ("Rigid bodies: the same", "Rigid bodies: `body_...` for all, `body_<name>_...` for one"),
     ("Scene: joints", "Joints"),
     ("Joints: the same", "Joints: `joint_...` for all, `joint_<name>_...` for one"),
+    ("Scene: openings", "Openings of the fluid"),
+    ("Openings: the same", "Openings: `opening_...` for all, `opening_<name>_...` for one"),
     ("Scene: links", "Links between beams"),
     ("Links: the same", "Links: `link_...` for all, `link_<name>_...` for one"),
     ("Scene: run and output", "Run and output"),

@@ -59,6 +59,24 @@ frond.write("dry.yaml", SCENE[: SCENE.index("fluid_velocity")].replace("domain_l
             + "fluid: false\ntime_step: 1e-4\noutput_every: 1000\nhistory_every: 0\nprogress_every: 0\n")
 
 
+OPEN = """
+scene_name: open
+domain_lo: [0, 0, 0]
+domain_hi: [0.6, 1, 0]
+walls: [ymin, ymax]
+openings: [in, out]
+opening_in: {face: xmin, type: inflow, speed: 1, profile: parabolic}
+opening_out: {face: xmax, type: outflow, pressure: 0}
+fluid_velocity: [1, 0, 0]
+sph: {dim: 2, dp: 0.1, density: 1, viscosity: 0.1, max_speed: 1.5}
+output_fields: [velocity, density, pressure, group, acceleration]
+output_every: 1000
+history_every: 0
+progress_every: 0
+"""
+frond.write("open.yaml", OPEN)
+
+
 def arrays(path):
     """Every dataset of an HDF5 file as numbers."""
     found = {}
@@ -167,6 +185,7 @@ def variants():
     for kind in ("beuler", "cn", "euler", "basicsymplectic"):
         extra = ["-ancf_ts_basicsymplectic_type", "2"] if kind == "basicsymplectic" else []
         cut(kind, ["-ancf_ts_type", kind, *extra, "-ancf_substeps", "4"], steps=40)
+    cut("open", ["-audit", "true"], steps=200, scene="open.yaml", dt=1.5e-3, threads="2") # 3 layers come in
     columns()
     cut("dry", ["-audit", "true"], scene="dry.yaml", threads="2")
     # Newton's method fails with 2 iterations: steps are halved

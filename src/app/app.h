@@ -123,6 +123,15 @@ typedef struct {
   PetscBool set[3];
 } SceneProbe;
 
+/* An opening of the fluid. */
+typedef struct {
+  char name[APP_NAME_LEN];
+  PetscInt type, given, profile, face; /* SphOpeningType, -Given, -Profile; face: 0 none, else 1 + it */
+  PetscReal lo[3], hi[3], position[3], edge1[3], edge2[3], speed, pressure, ramp; /* m, m/s, Pa, s */
+  char file[PETSC_MAX_PATH_LEN];
+  PetscBool set[8]; /* given, lo, hi, position, edge1, edge2, speed, pressure */
+} SceneOpening;
+
 /* Fields of a frame that may be left out. */
 enum { FIELD_VELOCITY, FIELD_DENSITY, FIELD_PRESSURE, FIELD_GROUP, FIELD_ACCELERATION, FIELD_COUNT };
 extern const char *const SceneFields[];
@@ -156,6 +165,8 @@ typedef struct {
   PetscInt ngrids, nprobes;
   SceneGrid *grids;
   SceneProbe *probes;
+  PetscInt nopenings, reserve; /* reserve: -1 predicted */
+  SceneOpening *openings;
   PetscReal tend, dt; /* s; dt only without fluid */
   char outdir[PETSC_MAX_PATH_LEN];
   PetscBool overwrite;
@@ -310,6 +321,13 @@ PetscErrorCode AppRegionWalls(App *app, PetscInt *n, PetscReal **x, PetscReal **
 
 /* appfluid.c */
 PetscErrorCode AppFluidFill(App *app);
+PetscReal AppFluidPressure(const App *app, const PetscReal x[3]);
+
+/* sceneopen.c */
+PetscErrorCode AppSceneReadOpenings(AppScene *scene);
+PetscErrorCode AppBuildOpenings(App *app, PetscReal *brought, PetscInt *zone);
+PetscErrorCode AppBuildReserve(App *app, PetscReal brought, PetscInt zone);
+PetscErrorCode AppOpeningDepth(const App *app, PetscInt face, PetscReal *depth);
 
 /* appwall.c */
 PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth,
@@ -416,6 +434,7 @@ PetscErrorCode AppAuditStep(App *app, PetscReal dt);
 
 /* sceneprobe.c, appgrid.c: grids in the frames, probes in the history. */
 typedef PetscErrorCode (*AppPut)(AppHistory h, const char name[], const char unit[], const char description[], PetscReal value);
+PetscErrorCode AppOpeningsPut(App *app, AppPut put, AppHistory h);
 PetscErrorCode AppAuditPut(App *app, const AppAudit *audit, AppPut put, AppHistory h);
 PetscErrorCode AppHistoryAudit(AppHistory history, const AppAudit **audit);
 PetscErrorCode AppSceneReadProbes(AppScene *scene);

@@ -11,6 +11,7 @@
   sums of trapezoids over the rows. Angular momenta likewise. docs/output.md says what the residuals hold.
 */
 #include "app.h"
+#include "sphopen.h"
 #include <math.h>
 
 static PetscReal norm3(const PetscReal v[3])
@@ -26,6 +27,20 @@ static void integrate(AppAudit *a, PetscReal t, const PetscReal rate[AUDIT_INTEG
     a->rate[k] = rate[k];
   }
   a->t = t;
+}
+
+/* Mass that came in less that which went out through openings since the start, kg; how much passed in all. */
+static PetscErrorCode through_openings(App *app, PetscReal *net, PetscReal *passed)
+{
+  PetscFunctionBegin;
+  *net = *passed = 0;
+  for (PetscInt i = 0; i < app->scene.nopenings; i++) {
+    SphFlow f;
+    PetscCall(SphGetFlow(app->sph, i, &f));
+    *net += f.massin - f.massout;
+    *passed += f.massin + f.massout;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static void set_residual(AppAudit *a, int term, PetscReal residual, PetscInt n, const PetscReal terms[])
@@ -90,7 +105,7 @@ static PetscErrorCode fluid_residuals(App *app, AppAudit *a, const SphSums *sums
 {
   const PetscReal W = a->work[SURFACE_WALL] + a->work[SURFACE_BEAM] + a->work[SURFACE_BODY];
   const PetscReal E = sums->kinetic + sums->internal, *got = a->integral;
-  PetscReal cs, small;
+  PetscReal cs, small, net, passed;
   PetscInt left;
   CoupleBalance balance;
 
@@ -100,11 +115,12 @@ static PetscErrorCode fluid_residuals(App *app, AppAudit *a, const SphSums *sums
     a->energy[AUDIT_FLUID] = E + W;
     for (int k = 0; k < 3; k++) a->angular[k] = a->L[k] + impulse[k];
   }
-  if (!(a->rows > 0) || (PetscReal)left != a->left) a->mass = sums->mass; /* markers that leave take their mass along */
+  PetscCall(through_openings(app, &net, &passed));
+  if (!(a->rows > 0) || (PetscReal)left != a->left) a->mass = sums->mass - net; /* markers that leave take their mass along */
   a->left = (PetscReal)left;
   PetscCall(SphGetSoundSpeed(app->sph, &cs));
   small = 1e-3 * sums->mass * cs / 10; /* of the momentum and energy of a fluid at a tenth of the speed of sound */
-  set_residual(a, AUDIT_MASS, sums->mass - a->mass, 1, &sums->mass);
+  set_residual(a, AUDIT_MASS, sums->mass - a->mass - net, 2, (PetscReal[]){sums->mass, passed});
   PetscCall(CoupleGetBalance(app->couple, &balance));
   set_residual(a, AUDIT_MOMENTUM, norm3(balance.residual), 2, (PetscReal[]){balance.scale, small});
   set_residual(a, AUDIT_FLUID, E + W - a->energy[AUDIT_FLUID] - got[AUDIT_BODY] + got[AUDIT_HEAT], 6,
@@ -211,6 +227,7 @@ static PetscErrorCode structure_residuals(App *app, AppAudit *a)
 static PetscBool is_closed(const App *app, int term, const AppAudit *a)
 {
   if (term == AUDIT_BEAMS) return (PetscBool)(app->loadramp == 0);
+  if (term == AUDIT_FLUID && app->scene.nopenings) return PETSC_FALSE; /* what passes them is not in the balance */
   return (PetscBool)((term != AUDIT_MOMENTUM && term != AUDIT_FLUID) || a->left == 0);
 }
 
@@ -302,7 +319,8 @@ static PetscErrorCode put_fluid(App *app, const AppAudit *a, AppPut put, AppHist
   PetscCall(put(h, "work_on_walls", J, "work of the fluid on walls", a->work[SURFACE_WALL]));
   PetscCall(put(h, "work_on_beams", J, "work of the fluid on beams", a->work[SURFACE_BEAM]));
   PetscCall(put(h, "work_on_bodies", J, "work of the fluid on bodies and beams of trunks", a->work[SURFACE_BODY]));
-  PetscCall(put(h, "mass_residual", flat ? "kg/m" : "kg", "mass of the fluid - initial", a->residual[AUDIT_MASS]));
+  PetscCall(put(h, "mass_residual", flat ? "kg/m" : "kg", "mass of the fluid - initial - what openings let in",
+                a->residual[AUDIT_MASS]));
   PetscCall(put(h, "fluid_energy_residual", J, "energy of the fluid - initial - what it received", a->residual[AUDIT_FLUID]));
   PetscCall(put(h, "fluid_energy_scale", J, "largest term of that balance so far", a->scale[AUDIT_FLUID]));
   PetscCall(put_angular(app, "fluid", a->L, a->turn, put, h));

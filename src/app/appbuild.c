@@ -1,6 +1,7 @@
 /* appbuild.c - the solver objects of a scene, and one step of them. */
 #include "app.h"
 #include "sphfill.h"
+#include "sphopen.h"
 #include <string.h>
 
 static PetscErrorCode build_sph(App *app)
@@ -144,7 +145,7 @@ static PetscErrorCode add_walls(App *app)
 {
   AppScene *s = &app->scene;
   PetscInt n = 0, m;
-  PetscReal dp, support, *x, *volume, *depth, *fx, *fvolume, *fdepth;
+  PetscReal dp, support, *x, *volume, *depth, *fx, *fvolume, *fdepth, lo[3], hi[3];
   CoupleSurface surface;
   char name[APP_NAME_LEN];
   PetscBool any = PETSC_FALSE;
@@ -154,12 +155,23 @@ static PetscErrorCode add_walls(App *app)
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SphGetSpacing(app->sph, &dp));
   PetscCall(SphGetSupport(app->sph, &support));
-  PetscCall(SphFillWalls(app->dim, dp, s->lo, s->hi, s->wall, s->periodic, support, &n, &x, &volume, &depth));
+  for (PetscInt f = 0; f < 6; f++) { /* walls go on beside the zones of openings */
+    PetscReal beyond;
+    PetscCall(AppOpeningDepth(app, f, &beyond));
+    if (f % 2)
+      hi[f / 2] = s->hi[f / 2] + beyond;
+    else
+      lo[f / 2] = s->lo[f / 2] - beyond;
+  }
+  PetscCall(SphFillWalls(app->dim, dp, lo, hi, s->wall, s->periodic, support, &n, &x, &volume, &depth));
   PetscCall(PetscMalloc3(3 * (size_t)n, &fx, n, &fvolume, n, &fdepth));
   for (PetscInt f = 0; f < 6; f++) {
     m = 0;
     for (PetscInt i = 0; i < n && s->wall[f]; i++) {
+      PetscBool open;
       if (wall_face(s, app->dim, x + 3 * i) != f) continue;
+      PetscCall(SphInOpening(app->sph, x + 3 * i, &open));
+      if (open) continue;
       PetscCall(PetscArraycpy(fx + 3 * m, x + 3 * i, 3));
       fvolume[m] = volume[i];
       fdepth[m++] = depth[i];
@@ -265,7 +277,8 @@ static PetscErrorCode check_places(const App *app)
 static PetscErrorCode build_couple(App *app)
 {
   AppScene *s = &app->scene;
-  PetscReal dp, support, dt;
+  PetscReal dp, support, dt, brought;
+  PetscInt zone;
   CoupleSurface surface;
 
   PetscFunctionBegin;
@@ -277,7 +290,9 @@ static PetscErrorCode build_couple(App *app)
   PetscCall(CoupleSetShort(app->couple, app->shortrange));
   PetscCall(CoupleSetAttach(app->couple, app->attach));
   PetscCall(check_places(app));
+  PetscCall(AppBuildOpenings(app, &brought, &zone));
   PetscCall(AppFluidFill(app));
+  PetscCall(AppBuildReserve(app, brought, zone));
   PetscCall(add_walls(app));
   PetscCall(add_region_walls(app));
   PetscCall(SphGetSpacing(app->sph, &dp));

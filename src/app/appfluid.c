@@ -6,6 +6,7 @@
 */
 #include "app.h"
 #include "sphfill.h"
+#include "sphopen.h"
 #include <unistd.h>
 
 #define BINS_MAX 64 /* along an axis */
@@ -152,8 +153,10 @@ static PetscBool keep_site(const PetscReal x[3], void *ctx)
   Carve *c = ctx;
   const AppScene *s = &c->app->scene;
   PetscInt b = 0;
+  PetscBool open;
 
   if (s->nregions && !inside_regions(c, x)) return PETSC_FALSE;
+  if (s->nopenings && !SphInOpening(c->app->sph, x, &open) && open) return PETSC_FALSE;
   for (PetscInt a = c->app->dim - 1; a >= 0; a--) b = b * c->bins[a] + bin_of(c, a, x[a]);
   for (PetscInt k = c->start[b]; k < c->start[b + 1]; k++) {
     const Image *image = &c->image[c->list[k]];
@@ -319,6 +322,15 @@ static PetscReal head(const AppScene *s, PetscInt dim, const PetscReal x[3])
   return sum;
 }
 
+/* Pressure at first, Pa. */
+PetscReal AppFluidPressure(const App *app, const PetscReal x[3])
+{
+  PetscReal rho;
+
+  if (app->scene.pressure != PRESSURE_HYDROSTATIC || SphGetDensity(app->sph, &rho)) return 0;
+  return rho * head(&app->scene, app->dim, x);
+}
+
 /* Before any memory is taken: so many sites must be numbers that PetscInt holds, and must fit into this machine. */
 static PetscErrorCode check_size(const App *app, PetscReal dp)
 {
@@ -377,13 +389,12 @@ static void lattice_box(const App *app, PetscReal dp, PetscReal lo[3], PetscReal
 PetscErrorCode AppFluidFill(App *app)
 {
   AppScene *s = &app->scene;
-  PetscReal dp, rho, lo[3], hi[3], *x = NULL, *v = NULL, *p = NULL;
+  PetscReal dp, lo[3], hi[3], *x = NULL, *v = NULL, *p = NULL;
   PetscInt n = 0;
   Carve c;
 
   PetscFunctionBegin;
   PetscCall(SphGetSpacing(app->sph, &dp));
-  PetscCall(SphGetDensity(app->sph, &rho));
   PetscCall(check_size(app, dp));
   PetscCall(carve_create(app, dp, &c));
   lattice_box(app, dp, lo, hi);
@@ -396,7 +407,7 @@ PetscErrorCode AppFluidFill(App *app)
   PetscCall(PetscMalloc2(3 * (size_t)n, &v, n, &p));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(PetscArraycpy(v + 3 * i, s->fluidvelocity, 3));
-    p[i] = s->pressure == PRESSURE_HYDROSTATIC ? rho * head(s, app->dim, x + 3 * i) : 0;
+    p[i] = AppFluidPressure(app, x + 3 * i);
   }
   PetscCall(SphAddFluid(app->sph, n, x, v, p));
   app->nfluid = n;

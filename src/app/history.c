@@ -285,6 +285,7 @@ static PetscErrorCode fill_row(AppHistory h, App *app, PetscReal dt)
   PetscCall(put_links(h, app));
   PetscCall(put_fluid(h, app));
   PetscCall(AppAuditPut(app, &h->audit, put, h));
+  PetscCall(AppOpeningsPut(app, put, h));
   PetscCall(AppProbesPut(app, put, h));
   h->known = PETSC_TRUE;
   for (PetscInt c = 0; c < h->ncols; c++)

@@ -191,9 +191,11 @@ static PetscErrorCode write_markers(AppOutput out, App *app, int64_t file)
   if (want[FIELD_DENSITY])
     PetscCall(AppH5Real(g, &(H5Label){"density", "kg/m^3", "marker density"}, PETSC_TRUE, n, 0, out->scalar));
   if (want[FIELD_GROUP])
-    PetscCall(
-        AppH5Int(g, &(H5Label){"group", "1", "-1 fluid, -2 left the domain, else the boundary group (see the attribute groups)"},
-                 n, 0, out->group));
+    PetscCall(AppH5Int(g,
+                       &(H5Label){"group", "1",
+                                  "-1 fluid, -2 left the domain or in reserve, -3 - k zone of opening k, else the boundary group "
+                                  "(see the attribute groups)"},
+                       n, 0, out->group));
   PetscCall(PetscMemzero(&all, sizeof(all)));
   all.a = out->vector;
   all.p = out->scalar;

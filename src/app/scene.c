@@ -443,6 +443,7 @@ static PetscErrorCode read_structures(AppScene *s, const char file[])
   PetscCall(AppSceneReadJoints(s));
   PetscCall(AppSceneReadLinks(s));
   PetscCall(AppSceneReadProbes(s));
+  PetscCall(AppSceneReadOpenings(s));
   PetscCall(PetscFree(beams.name));
   PetscCall(PetscFree(bodies.name));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -569,5 +570,6 @@ PetscErrorCode AppSceneDestroy(AppScene *s)
   PetscCall(AppSceneFreeRegions(s));
   PetscCall(PetscFree(s->grids));
   PetscCall(PetscFree(s->probes));
+  PetscCall(PetscFree(s->openings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

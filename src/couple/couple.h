@@ -330,11 +330,12 @@ FROND_EXTERN PetscErrorCode CoupleStateDestroy(CoupleState *state);
 
 /*
   Balance since set-up: impulses that went into the fluid and structures (kg m/s). residual = fluid momentum + structure momentum
-  - initial - impulse of body forces - impulse of supports, walls and prescribed bodies.
+  - initial - impulse of body forces - impulse of supports, walls and prescribed bodies - what came through openings.
 */
 typedef struct {
   PetscReal fluid[3], structure[3];       /* momentum now, kg m/s */
   PetscReal body[3], support[3], wall[3]; /* impulses since set-up, kg m/s */
+  PetscReal opening[3];                   /* momentum that openings let in, and impulses of their zones, since set-up, kg m/s */
   PetscReal residual[3], scale;           /* residual, and the largest term it is a difference of */
 } CoupleBalance;
 /*

@@ -1,5 +1,6 @@
 /* couplebalance.c - linear momentum of fluid and structures against the impulses that went in. */
 #include "coupleimpl.h"
+#include "sphopen.h"
 
 static PetscErrorCode Momenta(Couple c, PetscReal fluid[3], PetscReal structure[3])
 {
@@ -19,6 +20,23 @@ static PetscErrorCode Momenta(Couple c, PetscReal fluid[3], PetscReal structure[
     for (int k = 0; k < 3; k++) {
       structure[k] += p[k];
     }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mass that openings have let in, net, kg, and the momentum that came with it and from their zones. */
+PetscErrorCode CoupleOpenings(Couple c, PetscReal *mass, PetscReal momentum[3])
+{
+  PetscInt n;
+
+  PetscFunctionBegin;
+  *mass = momentum[0] = momentum[1] = momentum[2] = 0.0;
+  PetscCall(SphGetNumOpenings(c->sph, &n));
+  for (PetscInt i = 0; i < n; i++) {
+    SphFlow f;
+    PetscCall(SphGetFlow(c->sph, i, &f));
+    *mass += f.massin - f.massout;
+    for (int k = 0; k < 3; k++) momentum[k] += f.momentum[k] + f.impulse[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -50,19 +68,22 @@ static void AttachImpulses(Couple c, PetscReal dt)
 PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
 {
   CoupleBalance *b = &c->balance;
-  PetscReal f[3];
+  PetscReal f[3], net, came[3];
   PetscInt left;
 
   PetscFunctionBegin;
   PetscCall(SphGetBodyForce(c->sph, f));
   PetscCall(SphGetCounts(c->sph, NULL, NULL, &left));
-  if (left != c->left) { /* markers that leave take their mass along */
+  PetscCall(CoupleOpenings(c, &net, came)); /* at the end of the step */
+  if (left != c->left) {                    /* markers that leave take their mass along */
     SphSums sums;
     PetscCall(SphGetSums(c->sph, &sums));
-    c->mass = sums.mass;
+    c->mass = sums.mass - (net - c->net);
     c->left = left;
   }
   for (int k = 0; k < 3; k++) b->body[k] += dt * c->mass * f[k];
+  c->mass += net - c->net;
+  c->net = net;
   for (PetscInt i = 0; i < c->n; i++) {
     CoupleSlot *s = &c->slot[i];
     PetscReal p[3], weight[3], support[3];
@@ -99,15 +120,18 @@ PetscErrorCode CoupleBalanceAdd(Couple c, PetscReal dt)
 PetscErrorCode CoupleGetBalance(Couple c, CoupleBalance *balance)
 {
   CoupleBalance *b = &c->balance;
+  PetscReal net;
 
   PetscFunctionBegin;
   PetscCall(Momenta(c, b->fluid, b->structure));
+  PetscCall(CoupleOpenings(c, &net, b->opening));
   b->scale = 0.0;
   for (int k = 0; k < 3; k++) {
-    b->residual[k] = b->fluid[k] + b->structure[k] - c->p0[k] - b->body[k] - b->support[k] - b->wall[k];
+    b->residual[k] = b->fluid[k] + b->structure[k] - c->p0[k] - b->body[k] - b->support[k] - b->wall[k] - b->opening[k];
     b->scale = PetscMax(b->scale, PetscMax(PetscAbsReal(b->fluid[k]), PetscAbsReal(b->structure[k])));
     b->scale =
         PetscMax(b->scale, PetscMax(PetscAbsReal(b->body[k]), PetscMax(PetscAbsReal(b->support[k]), PetscAbsReal(b->wall[k]))));
+    b->scale = PetscMax(b->scale, PetscAbsReal(b->opening[k]));
   }
   *balance = *b;
   PetscFunctionReturn(PETSC_SUCCESS);

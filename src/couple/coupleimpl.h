@@ -52,6 +52,7 @@ struct _p_Couple {
   PetscReal *work;         /* 3 per marker of the largest surface */
   PetscReal p0[3];         /* momentum at set-up */
   PetscReal mass;          /* of the fluid, kg; for `left` markers gone */
+  PetscReal net;           /* that openings had let in by then, kg */
   PetscInt left;
   CoupleBalance balance; /* impulses accumulated so far */
   PetscReal *ledger;     /* n x 4: work (J) and angular impulse (N m s) of the fluid on each surface */
@@ -104,6 +105,7 @@ extern void CoupleAttachCopy(CoupleAttach attach, PetscBool load, PetscReal *sta
 /* couplebalance.c */
 extern PetscErrorCode CoupleBalanceStart(Couple couple);
 extern PetscErrorCode CoupleBalanceAdd(Couple couple, PetscReal dt);
+extern PetscErrorCode CoupleOpenings(Couple couple, PetscReal *mass, PetscReal momentum[3]);
 
 static inline void CoupleCross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
 {

@@ -90,7 +90,11 @@ PetscErrorCode CoupleMoveState(Couple c, FrondState *s)
   if (c->attach) PetscCall(CoupleAttachMoveState(c->attach, s));
   if (c->shortrange) PetscCall(CoupleShortMoveState(c->shortrange, s));
   PetscCall(CoupleLoadsMoveState(c, s));
-  if (s->way == FROND_STATE_LOAD) PetscCall(CoupleMoveMarkers(c, 0.0));
+  if (s->way == FROND_STATE_LOAD) {
+    PetscReal came[3];
+    PetscCall(CoupleMoveMarkers(c, 0.0));
+    PetscCall(CoupleOpenings(c, &c->net, came));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,12 +1,13 @@
 /* sph.c - lifecycle, backend choice and stepping of the fluid; no physics. */
 #include "sphimpl.h"
 #include "sphlink.h"
+#include "sphopenimpl.h"
 #include <math.h>
 #if defined(_OPENMP)
   #include <omp.h>
 #endif
 
-PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output;
+PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output, SPH_Open;
 
 static PetscErrorCode SphRegisterEvents(void)
 {
@@ -24,6 +25,7 @@ static PetscErrorCode SphRegisterEvents(void)
   PetscCall(PetscLogEventRegister("SphReinit", classid, &SPH_Reinit));
   PetscCall(PetscLogEventRegister("SphMotion", classid, &SPH_Motion));
   PetscCall(PetscLogEventRegister("SphOutput", classid, &SPH_Output));
+  PetscCall(PetscLogEventRegister("SphOpenings", classid, &SPH_Open));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,6 +77,7 @@ PetscErrorCode SphDestroy(Sph *sph)
   if (!*sph) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*sph)->ops) PetscCall((*(*sph)->ops->destroy)(*sph));
   PetscCall(SphLinksDestroy(*sph));
+  PetscCall(SphOpeningsDestroy(*sph));
   PetscCall(SphFreeArrays(*sph));
   PetscCall(PetscFree((*sph)->forcetime));
   PetscCall(PetscFree((*sph)->force));
@@ -180,6 +183,7 @@ static PetscErrorCode CheckBackend(Sph sph)
   PetscCheck(sph->par.gradient == SPH_GRADIENT_NONE || sph->par.shifting != SPH_SHIFTING_NONE, sph->comm, PETSC_ERR_ARG_INCOMP,
              "sph_gradient_correction = %s: needs sph_shifting sun, else nothing keeps the markers in order",
              SphGradientTypes[sph->par.gradient]);
+  PetscCall(SphOpeningsCheck(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -196,7 +200,8 @@ PetscErrorCode SphSetUp(Sph sph)
   PetscCall(ChooseBackend(sph));
   PetscCall(CheckBackend(sph));
   for (PetscInt i = 0; i < sph->n; i++) {
-    if (sph->group[i] == -1) { /* SphAddFluid left the pressure here, and the volume in m */
+    if (sph->group[i] == -2) continue; /* in reserve: no mass yet */
+    if (sph->group[i] < 0) {           /* SphAddFluid left the pressure here, and the volume in m */
       PetscCheck(sph->st.s[i] > -0.5 * sph->par.B, sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
                  "initial pressure %g Pa of marker %" PetscInt_FMT ": must be > %g Pa for this sound speed", sph->st.s[i], i,
                  (double)(-0.5 * sph->par.B));
@@ -212,7 +217,9 @@ PetscErrorCode SphSetUp(Sph sph)
   PetscCall(SphAllocateArrays(sph, sph->ops == &SphOps_CPU ? PETSC_TRUE : PETSC_FALSE));
   PetscCall((*sph->ops->setup)(sph));
   sph->setup = PETSC_TRUE;
+  PetscCall(SphOpeningsSetUp(sph));
   PetscCall((*sph->ops->build)(sph));
+  PetscCall(SphOpeningsApply(sph, 0.0));
   PetscCall((*sph->ops->rates)(sph));
   sph->evaluations = 0.0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -294,12 +301,14 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode EvaluateRates(Sph sph)
+/* dt: of the step that begins; 0 inside one. What openings prescribe is that of the middle of the step. */
+static PetscErrorCode EvaluateRates(Sph sph, PetscReal dt)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Build, 0, 0, 0, 0));
   if (!sph->insidestep) PetscCall((*sph->ops->build)(sph));
   PetscCall(PetscLogEventEnd(SPH_Build, 0, 0, 0, 0));
+  if (!sph->insidestep) PetscCall(SphOpeningsApply(sph, sph->t + 0.5 * dt));
   PetscCall((*sph->ops->rates)(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -313,7 +322,7 @@ PetscErrorCode SphStepBegin(Sph sph, PetscReal dt)
   PetscCheck(!sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepBegin() was called twice without SphStepEnd()");
   PetscCheck(dt > 0.0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "the time step %g s must be > 0", (double)dt);
   SphBodyForceAt(sph, sph->t);
-  PetscCall(EvaluateRates(sph));
+  PetscCall(EvaluateRates(sph, dt));
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
   if (sph->par.integrator != SPH_INTEGRATOR_VERLET) PetscCall((*sph->ops->halfstep)(sph, dt));
   PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
@@ -335,7 +344,7 @@ PetscErrorCode SphStepEvaluate(Sph sph)
   PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEvaluate() was called without SphStepBegin()");
   PetscCheck(sph->par.integrator != SPH_INTEGRATOR_VERLET, sph->comm, PETSC_ERR_SUP,
              "sph_integrator = verlet has no second stage to evaluate again: use rk2 or symplectic");
-  PetscCall(EvaluateRates(sph));
+  PetscCall(EvaluateRates(sph, 0.0));
   sph->evaluated = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -349,17 +358,19 @@ PetscErrorCode SphStepEnd(Sph sph)
 {
   PetscFunctionBegin;
   PetscCheck(sph->insidestep, sph->comm, PETSC_ERR_ORDER, "SphStepEnd() was called without SphStepBegin()");
-  if (sph->par.integrator != SPH_INTEGRATOR_VERLET && !sph->evaluated) PetscCall(EvaluateRates(sph));
+  if (sph->par.integrator != SPH_INTEGRATOR_VERLET && !sph->evaluated) PetscCall(EvaluateRates(sph, 0.0));
   sph->evaluated = PETSC_FALSE;
   PetscCall(PetscLogEventBegin(SPH_Integrate, 0, 0, 0, 0));
   sph->verletspan = sph->verletstep % SPH_VERLET_EVERY ? sph->dt + sph->dtold : 0.0;
   sph->verletstep++;
+  PetscCall(SphOpeningsForce(sph, sph->dt));
   PetscCall((*sph->ops->fullstep)(sph, sph->dt));
   sph->dtold = sph->dt;
   PetscCall(PetscLogEventEnd(SPH_Integrate, 0, 0, 0, 0));
   sph->insidestep = PETSC_FALSE;
   sph->t += sph->dt;
   sph->step++;
+  PetscCall(SphOpeningsExchange(sph));
   if (sph->par.reinit != SPH_REINIT_NONE && sph->step % sph->par.reinitevery == 0) {
     PetscCall(PetscLogEventBegin(SPH_Reinit, 0, 0, 0, 0));
     PetscCall((*sph->ops->build)(sph));

@@ -4,6 +4,7 @@
   Positions and densities move with the XSPH velocity, Eq. 10, velocities with Eq. 5; the time integrators are in sphstep.h.
 */
 #include "sph_cpu.h"
+#include "sphopenimpl.h"
 #include <math.h>
 #include <omp.h>
 typedef double sphreal;
@@ -178,11 +179,27 @@ static PetscErrorCode Rates_CPU(Sph sph)
   if (sph->par.gradient != SPH_GRADIENT_NONE) Sweep(sph, SPH_SWEEP_CORRECT);
   if (sph->par.shifting != SPH_SHIFTING_NONE) Sweep(sph, SPH_SWEEP_SHIFT);
   PetscCall(PetscLogEventEnd(SPH_Rates, 0, 0, 0, 0));
-  sph->evaluations += (PetscReal)(sph->n - sph->left);
+  sph->evaluations += (PetscReal)(sph->n - sph->left - (sph->openings ? sph->openings->idle : 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 typedef enum { STAGE_HALF, STAGE_RK2, STAGE_SYMPLECTIC, STAGE_VERLET } Stage;
+
+/*
+  Zone marker i of an opening: moves with its velocity, keeps it and its density. Returns the squared displacement so far, m^2.
+*/
+SPH_INLINE double MoveZone(Sph sph, const Stage stage, PetscInt i, double dt)
+{
+  double r2 = 0.0;
+
+  for (int k = 0; k < sph->par.dim; k++) {
+    double *x = &sph->st.x[k][i], *xn = &sph->stn.x[k][i];
+    if (stage == STAGE_HALF) *xn = *x;
+    *x = *xn + (stage == STAGE_HALF ? 0.5 : 1.0) * dt * sph->st.v[k][i];
+    r2 += (*x - *xn) * (*x - *xn);
+  }
+  return r2;
+}
 
 /*
   One stage of sphstep.h for every marker; boundaries keep their motion, and their density unless it is evolved. Returns the
@@ -198,6 +215,11 @@ SPH_INLINE double MoveStage(Sph sph, const Stage stage, double dt)
     const int fluid = sph->group[i] == -1;
     double r2 = 0.0;
     SphStepMarker m;
+    if (SphIsZone(sph->group[i])) {
+      r2 = MoveZone(sph, stage, i, dt);
+      far2 = PetscMax(far2, r2);
+      continue;
+    }
     if (!fluid && !(evolve && sph->group[i] >= 0)) continue;
     for (int k = 0; k < 3; k++) {
       m.x[k] = sph->st.x[k][i];
@@ -370,6 +392,9 @@ static PetscErrorCode State_CPU(Sph sph, FrondState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* sph_cpuopen.c */
+extern PetscErrorCode SphFit_CPU(Sph sph, PetscInt n, const double *at, const double *offset, double *value, int *fluid);
+
 const SphOps SphOps_CPU = {SetUp_CPU,  Build_CPU, Rates_CPU,  HalfStep_CPU, FullStep_CPU, Reinit_CPU,
                            Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU,     Push_CPU,     Destroy_CPU,
-                           NULL,       State_CPU, NULL,       NULL,         NULL};
+                           NULL,       State_CPU, NULL,       NULL,         NULL,         SphFit_CPU};

@@ -21,6 +21,7 @@ typedef double sphreal;
 
 #include <math.h>
 #include "sph_cpu.h"
+#include "sphopenimpl.h"
 #include "sphpair.h"
 #include "sphsimd.h"
 #include <omp.h>
@@ -171,6 +172,10 @@ SPH_INLINE void AuxFluid(const int kernel, const Sweep *w, const List *l, int i)
                 vz = w->q[SPH_Q_V + 2][i];
   const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i];
   sphreal sx = 0, sy = 0, sz = 0;
+  if (SphIsZone(w->sph->group[i])) { /* moves as its opening says */
+    for (int k = 0; k < 3; k++) SPH_VALUES(w->sph->rate.dv[k])[i] = 0;
+    return;
+  }
 #pragma omp simd reduction(+ : sx, sy, sz)
   for (int j = 0; j < l->n; j++) {
     const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], rhoj = c.rho0 + c.rho0 * S[j];
@@ -192,6 +197,7 @@ SPH_INLINE void Shift(const int kernel, const Sweep *w, const List *l, int i)
   const sphreal *restrict X = l->q[0], *restrict Y = l->q[1], *restrict Z = l->q[2], *restrict VOL = l->q[SPH_Q_VOL];
   const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i];
   sphreal px = 0, py = 0, pz = 0, div = 0;
+  if (SphIsZone(w->sph->group[i])) return;
 #pragma omp simd reduction(+ : px, py, pz, div)
   for (int j = 0; j < l->n; j++) {
     const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], r2 = dx * dx + dy * dy + dz * dz;

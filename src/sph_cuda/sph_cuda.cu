@@ -481,4 +481,4 @@ static PetscErrorCode Destroy_CUDA(Sph sph)
 extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,      SphCudaBuild, Rates_CUDA,   SphCudaHalfStep, SphCudaFullStep,
                                        SphCudaReinit,   Motion_CUDA,  Force_CUDA,   SphCudaLimits,   Pull_CUDA,
                                        Push_CUDA,       Destroy_CUDA, SphCudaCheck, State_CUDA,      SphCudaLinkMotion,
-                                       SphCudaLinkLoad, Rotation_CUDA};
+                                       SphCudaLinkLoad, Rotation_CUDA, NULL};

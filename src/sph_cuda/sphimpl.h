@@ -104,6 +104,9 @@ typedef struct _SphOps {
   PetscErrorCode (*linkmotion)(Sph, PetscInt k);
   PetscErrorCode (*linkload)(Sph, PetscInt k, PetscReal *load, double *totals);
   PetscErrorCode (*rotation)(Sph, PetscInt group); /* sph->omega of the group changed; NULL: it is read where it is */
+  /* sphopen.c: vx, vy, vz, p, s of a linear fit to the fluid around n points (n x 3, m), at the points and at an offset (n x 3,
+     m) from them (n x 2 x 5); fluid[]: whether there is any. NULL: there are no openings */
+  PetscErrorCode (*fit)(Sph, PetscInt n, const double *at, const double *offset, double *value, int *fluid);
 } SphOps;
 
 struct _p_Sph {
@@ -130,7 +133,7 @@ struct _p_Sph {
       *wallratio; /* boundary: depth below the surface (m) until SphSetUp, then the factor of SphWallRatio; fluid: 0; or NULL */
   double *ab[3];  /* boundary acceleration, m/s^2, or NULL */
   double *omega;  /* angular velocity at boundary markers in the order added, (n - nfluid) x 3, rad/s; NULL without adami */
-  int *group;     /* -1 fluid, -2 left, else group */
+  int *group;     /* -1 fluid, -2 left or in reserve, SPH_ZONE(k) zone of opening k, else group */
   int *id, *slot;
   PetscReal backendbytes; /* memory of the backend on the host, bytes */
 
@@ -143,8 +146,9 @@ struct _p_Sph {
   PetscReal evaluations;                        /* marker right-hand sides evaluated */
 
   const SphOps *ops;
-  void *data;              /* backend */
-  struct _SphLinks *links; /* sphlink.c; NULL: none */
+  void *data;                    /* backend */
+  struct _SphLinks *links;       /* sphlink.c; NULL: none */
+  struct _SphOpenings *openings; /* sphopen.c; NULL: none */
 };
 
 FROND_VISIBLE extern const SphOps SphOps_CPU;
@@ -153,7 +157,7 @@ FROND_VISIBLE extern const SphOps SphOps_CUDA;
 extern PetscErrorCode SphCudaAvailable(PetscBool *yes);
 #endif
 
-extern PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output;
+extern PetscLogEvent SPH_Build, SPH_Aux, SPH_Rates, SPH_Integrate, SPH_Reinit, SPH_Motion, SPH_Output, SPH_Open;
 
 /* sphcell.c: grid for the markers as they are, and a stable sort of all arrays into cell order. */
 extern PetscErrorCode SphGridSetUp(Sph sph, PetscReal skin, SphGrid *grid);
@@ -174,6 +178,9 @@ static inline int SphTwoVelocities(const SphParams *p)
 FROND_VISIBLE extern PetscBool SphIsLinked(Sph sph, PetscInt group);
 extern PetscErrorCode SphLinksState(Sph sph, FrondState *s);
 extern PetscErrorCode SphLinksDestroy(Sph sph);
+
+/* sphmarkers.c: markers of the fluid's kind: group -1, -2 (reserve) or SPH_ZONE(k); as SphAddFluid(). */
+extern PetscErrorCode SphAppendFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *p, int group);
 
 /* sphmarkers.c: the arrays that a run needs besides those of the markers added; all of them, rates in double precision, or
  * (spare) only those that a term reads, rates in that of the pair sums. */

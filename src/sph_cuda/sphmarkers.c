@@ -145,6 +145,20 @@ static PetscErrorCode Append(Sph sph, PetscInt n, const PetscReal *x, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphAppendFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *p, int group)
+{
+  const PetscInt first = sph->n;
+
+  PetscFunctionBegin;
+  PetscCheck(sph->ngroups == 0, sph->comm, PETSC_ERR_ORDER,
+             "SphAddFluid(), SphAddOpening() and SphAddReserve() must come before SphAddBoundary()");
+  PetscCall(Append(sph, n, x, v, group));
+  for (PetscInt j = 0; j < n; j++) sph->st.s[first + j] = p ? p[j] : 0.0; /* turned into a density by SphSetUp() */
+  sph->nfluid += n;
+  sph->groupstart[0] = sph->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SphAddFluid - Add n fluid markers at x (n x 3, m) with velocities v (n x 3, m/s, or NULL) and pressures p (n, Pa, or NULL).
 
@@ -152,14 +166,8 @@ static PetscErrorCode Append(Sph sph, PetscInt n, const PetscReal *x, const Pets
 @*/
 PetscErrorCode SphAddFluid(Sph sph, PetscInt n, const PetscReal *x, const PetscReal *v, const PetscReal *p)
 {
-  const PetscInt first = sph->n;
-
   PetscFunctionBegin;
-  PetscCheck(sph->ngroups == 0, sph->comm, PETSC_ERR_ORDER, "SphAddFluid() must come before SphAddBoundary()");
-  PetscCall(Append(sph, n, x, v, -1));
-  for (PetscInt j = 0; j < n; j++) sph->st.s[first + j] = p ? p[j] : 0.0; /* turned into a density by SphSetUp() */
-  sph->nfluid += n;
-  sph->groupstart[0] = sph->n;
+  PetscCall(SphAppendFluid(sph, n, x, v, p, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

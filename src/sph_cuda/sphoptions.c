@@ -1,5 +1,6 @@
 /* sphoptions.c - every parameter of the fluid: setter, option of the same name, and what SphView prints. */
 #include "sphimpl.h"
+#include "sphopenimpl.h"
 
 /* A pointer by itself since PETSc 3.23. */
 #if PETSC_VERSION_LT(3, 23, 0)
@@ -526,6 +527,7 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  domain (%g, %g, %g) to (%g, %g, %g) m, periodic %d %d %d\n", (double)p->lo[0],
                                    (double)p->lo[1], (double)p->lo[2], (double)p->hi[0], (double)p->hi[1], (double)p->hi[2],
                                    p->periodic[0], p->periodic[1], p->periodic[2]));
+  PetscCall(SphOpeningsView(sph, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 typedef double sphreal;
 #include "sphsearch.h"
+#include "sphopenimpl.h"
 #include "sphpair.h"
 
 static double Wrapped(const SphParams *p, int k, double x)
@@ -10,12 +11,13 @@ static double Wrapped(const SphParams *p, int k, double x)
   return p->periodic[k] ? x - length * floor((x - p->lo[k]) / length) : x;
 }
 
-/* Whether marker i is wanted: fluid, or boundary with those too, and within 2h of the box or of its periodic images. */
+/* Whether marker i is wanted: fluid or in the zone of an opening, or boundary with those too, and within 2h of the box or of its
+ * periodic images. */
 static int Wanted(Sph sph, PetscInt i, const PetscReal lo[3], const PetscReal hi[3], int boundary)
 {
   const SphParams *p = &sph->par;
 
-  if (sph->group[i] != -1 && !(boundary && sph->group[i] >= 0)) return 0;
+  if (sph->group[i] != -1 && !SphIsZone(sph->group[i]) && !(boundary && sph->group[i] >= 0)) return 0;
   for (int k = 0; k < p->dim && lo; k++) {
     const double x = sph->st.x[k][i];
     if (!p->periodic[k] && (x < lo[k] - 2.0 * p->h || x > hi[k] + 2.0 * p->h)) return 0;
@@ -102,10 +104,10 @@ PetscErrorCode SphSearchDestroy(SphSearch *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void AddMarker(const SphParams *p, const SphSearch *s, int j, const double d[3], SphPointSums *out)
+void SphPointAdd(const SphParams *p, double vol, const double v[3], double s, const double d[3], SphPointSums *out)
 {
-  const double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], w = s->vol[j] * sph_w(p->kernel, sqrt(r2));
-  const double value[5] = {s->v[0][j], s->v[1][j], s->v[2][j], sph_eos(s->s[j], p->B, p->gamma) + p->pb, s->s[j]};
+  const double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], w = vol * sph_w(p->kernel, sqrt(r2));
+  const double value[5] = {v[0], v[1], v[2], sph_eos(s, p->B, p->gamma) + p->pb, s};
   int at = 4;
 
   if (!(w > 0.0)) return;
@@ -168,14 +170,15 @@ void SphSearchSum(const Sph sph, const SphSearch *s, const PetscReal xp[3], SphP
     for (int j = range[o].first; j < range[o].last; j++) {
       const double d[3] = {(s->x[0][j] + shift[0] - x[0]) / p->h, (s->x[1][j] + shift[1] - x[1]) / p->h,
                            (s->x[2][j] + shift[2] - x[2]) / p->h};
-      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 4.0) AddMarker(p, s, j, d, out);
+      const double v[3] = {s->v[0][j], s->v[1][j], s->v[2][j]};
+      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 4.0) SphPointAdd(p, s->vol[j], v, s->s[j], d, out);
     }
   }
 }
 
-/* Solve the symmetric positive definite system A c = e_0 of order n (row-major 4 x 4) by Cholesky's factors; 0 when a pivot says
- * that the markers do not span the space. */
-static int SolveUnit(int n, double A[4][4], double c[4])
+/* Solve the symmetric positive definite system A c = (1, u) of order n (row-major 4 x 4) by Cholesky's factors; 0 when a pivot
+ * says that the markers do not span the space. */
+static int SolveUnit(int n, double A[4][4], const double u[3], double c[4])
 {
   const double scale = A[0][0];
 
@@ -189,7 +192,7 @@ static int SolveUnit(int n, double A[4][4], double c[4])
     }
   }
   for (int i = 0; i < n; i++) {
-    c[i] = i == 0 ? 1.0 : 0.0;
+    c[i] = i == 0 ? 1.0 : u[i - 1];
     for (int k = 0; k < i; k++) c[i] -= A[i][k] * c[k];
     c[i] /= A[i][i];
   }
@@ -202,13 +205,18 @@ static int SolveUnit(int n, double A[4][4], double c[4])
 
 int SphPointValues(const SphPointSums *s, int dim, int order, double value[5])
 {
+  return SphPointValuesAt(s, dim, order, (const double[3]){0.0, 0.0, 0.0}, value);
+}
+
+int SphPointValuesAt(const SphPointSums *s, int dim, int order, const double u[3], double value[5])
+{
   const double *w = s->w;
   double A[4][4] = {{w[0], w[1], w[2], w[3]}, {w[1], w[4], w[5], w[6]}, {w[2], w[5], w[7], w[8]}, {w[3], w[6], w[8], w[9]}};
   double c[4] = {0.0, 0.0, 0.0, 0.0};
 
   for (int f = 0; f < 5; f++) value[f] = 0.0;
   if (!(w[0] > 0.0)) return -1;
-  if (order == 1 && s->markers > dim && SolveUnit(dim + 1, A, c)) {
+  if (order == 1 && s->markers > dim && SolveUnit(dim + 1, A, u, c)) {
     for (int f = 0; f < 5; f++)
       for (int k = 0; k <= dim; k++) value[f] += c[k] * s->f[f][k];
     return 1;

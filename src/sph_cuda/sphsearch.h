@@ -32,7 +32,8 @@ typedef struct {
   double shift[3];
 } SphSearchRange;
 
-/* Which fluid markers, and boundary markers too: those within 2h of the box (lo, hi), all of them when lo is NULL. */
+/* Which fluid markers, those in the zones of openings among them, and boundary markers too: those within 2h of the box (lo, hi),
+ * all of them when lo is NULL. */
 extern PetscErrorCode SphSearchCreate(Sph sph, const PetscReal lo[3], const PetscReal hi[3], int boundary, SphSearch *search);
 extern PetscErrorCode SphSearchDestroy(SphSearch *search);
 /* The cells around the point, which comes back wrapped into the period; returns how many. */
@@ -45,5 +46,9 @@ extern void SphSearchSum(const Sph sph, const SphSearch *search, const PetscReal
   weighted with the kernel (Shepard, ACM 23 (1968)). Returns the order used, or -1 with no marker near.
 */
 extern int SphPointValues(const SphPointSums *sums, int dim, int order, double value[5]);
+/* The same function where it is u (in units of h) off the point. */
+extern int SphPointValuesAt(const SphPointSums *sums, int dim, int order, const double u[3], double value[5]);
+/* Add a marker of volume vol (m^3), velocity v and density s = rho/rho0 - 1 that is d (in units of h) off the point. */
+extern void SphPointAdd(const SphParams *par, double vol, const double v[3], double s, const double d[3], SphPointSums *sums);
 
 #endif

@@ -5,6 +5,7 @@
   give the same bits. A backend's search structure goes along; another backend that reads the state makes its own anew.
 */
 #include "sphimpl.h"
+#include "sphopenimpl.h"
 
 static PetscErrorCode CheckReady(Sph sph, const char *function)
 {
@@ -114,6 +115,7 @@ PetscErrorCode SphMoveState(Sph sph, FrondState *s)
   if (sph->ops->state) PetscCall((*sph->ops->state)(sph, s));
   if (!sph->ops->state && s->way != FROND_STATE_COUNT) PetscCall((*sph->ops->push)(sph));
   PetscCall(SphLinksState(sph, s));
+  PetscCall(SphOpeningsState(sph, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
