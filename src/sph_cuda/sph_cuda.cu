@@ -478,7 +478,7 @@ static PetscErrorCode Destroy_CUDA(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,      SphCudaBuild, Rates_CUDA,   SphCudaHalfStep, SphCudaFullStep,
-                                       SphCudaReinit,   Motion_CUDA,  Force_CUDA,   SphCudaLimits,   Pull_CUDA,
-                                       Push_CUDA,       Destroy_CUDA, SphCudaCheck, State_CUDA,      SphCudaLinkMotion,
+extern "C" const SphOps SphOps_CUDA = {SetUp_CUDA,      SphCudaBuild,  Rates_CUDA,   SphCudaHalfStep, SphCudaFullStep,
+                                       SphCudaReinit,   Motion_CUDA,   Force_CUDA,   SphCudaLimits,   Pull_CUDA,
+                                       Push_CUDA,       Destroy_CUDA,  SphCudaCheck, State_CUDA,      SphCudaLinkMotion,
                                        SphCudaLinkLoad, Rotation_CUDA, NULL};
