@@ -347,7 +347,7 @@ PetscErrorCode AncfSetUpLaneBeams(Ancf ancf)
   if (2 * ancf->nbeams < ANCF_LANES) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(ancf->nbeams, &order));
   for (PetscInt b = 0; b < ancf->nbeams; b++) order[b] = &ancf->beams[b];
-  qsort(order, (size_t)ancf->nbeams, sizeof(*order), LongestFirst);
+  qsort(order, (size_t)ancf->nbeams, sizeof(*order), LongestFirst); /* NOLINT(bugprone-sizeof-expression): sorts pointers */
   ancf->nlanebeams = (ancf->nbeams + ANCF_LANES - 1) / ANCF_LANES;
   PetscCall(PetscMalloc1(ancf->nlanebeams, &ancf->lanebeams));
   for (PetscInt k = 0; k < ancf->nlanebeams; k++) {

@@ -120,14 +120,15 @@ PetscErrorCode AncfMoveCounts(Ancf ancf, FrondState *s)
 PetscErrorCode AncfMoveState(Ancf ancf, FrondState *s)
 {
   PetscReal *x = NULL;
+  const FrondStateWay way = s->way;
   PetscInt n;
 
   PetscFunctionBegin;
   PetscCall(AncfGetPackSize(ancf, &n));
-  if (s->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
-  if (s->way == FROND_STATE_SAVE) PetscCall(AncfPack(ancf, x));
+  if (way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
+  if (way == FROND_STATE_SAVE) PetscCall(AncfPack(ancf, x));
   FrondMoveReal(s, "beams/state", x, n);
-  if (s->way == FROND_STATE_LOAD) PetscCall(AncfUnpack(ancf, x));
+  if (way == FROND_STATE_LOAD) PetscCall(AncfUnpack(ancf, x));
   PetscCall(PetscFree(x));
   PetscCall(AncfMoveCounts(ancf, s));
   PetscFunctionReturn(PETSC_SUCCESS);

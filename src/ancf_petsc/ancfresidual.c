@@ -278,7 +278,7 @@ PetscErrorCode AncfExplicitAcceleration(Ancf ancf, const PetscReal *e, const Pet
     for (PetscInt c = 0; c < 6; c++) a[j * astride + c] = -a[j * astride + c];
   AncfFixRows(ancf, NULL, 0, a, astride);
   PetscCall(AncfMassSolve(ancf, a, astride));
-  for (PetscInt j = 0; j < ancf->nnodes && damping > 0; j++)
+  for (PetscInt j = 0; v && damping > 0 && j < ancf->nnodes; j++)
     for (int c = 0; c < 6; c++)
       if (!(ancf->fixed[j] & (c < 3 ? ANCF_FIX_POSITION : ANCF_FIX_GRADIENT))) a[j * astride + c] -= damping * v[j * stride + c];
   PetscFunctionReturn(PETSC_SUCCESS);

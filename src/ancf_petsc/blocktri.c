@@ -79,7 +79,7 @@ static inline __attribute__((always_inline)) void LDL(const int bs, Lanes *A)
     Lanes d = a[bs * i + i];
 
     EACH(int k = 0; k < i; k++) d -= a[bs * k + i] * a[bs * k + i] * a[bs * k + k]; /* rows above hold D L^T until the end */
-    a[bs * i + i] = d = 1.0 / d;
+    a[bs * i + i] = 1.0 / d;
     EACH(int j = i + 1; j < bs; j++)
     {
       Lanes x = a[bs * i + j];
@@ -246,7 +246,8 @@ static inline __attribute__((always_inline)) void SolveBatch(const int bs, const
   }
 }
 
-/* The block sizes of beams are compiled for themselves. */
+/* The block sizes of beams are compiled for themselves. The calls are statements: no parentheses.
+   NOLINTBEGIN(bugprone-macro-parentheses) */
 #define DISPATCH(bs, call6, call12, calln)                                                                                       \
   do {                                                                                                                           \
     if ((bs) == 6)                                                                                                               \
@@ -256,6 +257,7 @@ static inline __attribute__((always_inline)) void SolveBatch(const int bs, const
     else                                                                                                                         \
       calln;                                                                                                                     \
   } while (0)
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 static int Thread(void)
 {
@@ -297,8 +299,8 @@ static PetscErrorCode FindChains(Mat P, BlockTri *t)
   PetscFunctionBegin;
   PetscCall(MatGetSize(P, &rows, NULL));
   nb = rows / t->bs;
-  t->first = malloc(sizeof(PetscInt) * (size_t)nb);
-  t->length = malloc(sizeof(PetscInt) * (size_t)nb);
+  t->first = malloc(sizeof(PetscInt) * (size_t)PetscMax(nb, 1));
+  t->length = malloc(sizeof(PetscInt) * (size_t)PetscMax(nb, 1));
   PetscCheck(t->first && t->length, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %" PetscInt_FMT " block rows", nb);
   for (PetscInt j = 0; j < nb; j++) {
     PetscBool linked = lastlinked == j ? PETSC_TRUE : PETSC_FALSE;
@@ -318,7 +320,7 @@ static PetscErrorCode FindChains(Mat P, BlockTri *t)
       }
       PetscCall(MatRestoreRow(P, t->bs * j + r, &nc, &cols, NULL));
     }
-    if (linked)
+    if (linked && n > 0)
       t->length[n - 1]++;
     else {
       t->first[n] = j;
@@ -352,7 +354,7 @@ static PetscErrorCode MakeBatches(BlockTri *t)
   sort_length = length;
   qsort(order, (size_t)n, sizeof(PetscInt), LongestFirst);
   t->nbatches = (n + BLOCKTRI_LANES - 1) / BLOCKTRI_LANES;
-  t->batches = malloc(sizeof(Batch) * (size_t)t->nbatches);
+  t->batches = malloc(sizeof(Batch) * (size_t)PetscMax(t->nbatches, 1));
   PetscCheck(t->batches, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %" PetscInt_FMT " batches", t->nbatches);
   t->maxrows = 0;
   t->rows = 0;
@@ -417,7 +419,7 @@ static PetscErrorCode Extract(Mat P, BlockTri *t, const Batch *b)
 
 static PetscErrorCode Allocate(BlockTri *t)
 {
-  const size_t m = (size_t)(t->bs * t->bs), maxrows = (size_t)t->maxrows, factors = t->source ? 0 : 3 * m * t->rows;
+  const size_t m = (size_t)t->bs * (size_t)t->bs, maxrows = (size_t)t->maxrows, factors = t->source ? 0 : 3 * m * t->rows;
 
   PetscFunctionBegin;
 #if defined(_OPENMP)
@@ -430,7 +432,7 @@ static PetscErrorCode Allocate(BlockTri *t)
   PetscCheck(t->block, PETSC_COMM_SELF, PETSC_ERR_MEM, "PCBLOCKTRI: no memory for %g MB",
              (double)(factors + (size_t)t->nthreads * t->nwork) * sizeof(Lanes) / 1e6);
   t->work = (Lanes *)t->block;
-  t->factor = factors ? t->work + (size_t)t->nthreads * t->nwork : NULL;
+  t->factor = t->source ? NULL : t->work + (size_t)t->nthreads * t->nwork;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -96,7 +96,7 @@ static PetscErrorCode add_row(const Csv *c, char line[], const char *const names
   if (n == *alloc) {
     *alloc = 2 * *alloc + 64;
     PetscCall(PetscRealloc((size_t)*alloc * sizeof(PetscReal), &table->t));
-    PetscCall(PetscRealloc((size_t)(*alloc * ncols) * sizeof(PetscReal), &table->value));
+    PetscCall(PetscRealloc((size_t)*alloc * (size_t)ncols * sizeof(PetscReal), &table->value));
   }
   PetscCall(PetscArrayzero(table->value + n * ncols, ncols));
   PetscCall(read_row(c, line, names, &table->t[n], table->value + n * ncols));

@@ -61,7 +61,7 @@ PetscErrorCode AppGridsWrite(App *app, int64_t file)
 
 static PetscErrorCode put_point(App *app, const SceneProbe *p, AppPut put, AppHistory h)
 {
-  PetscReal v[3], pressure, fraction;
+  PetscReal v[3] = {0}, pressure, fraction;
   char name[96];
 
   PetscFunctionBegin;

@@ -19,7 +19,7 @@ static PetscErrorCode collect_name(MPI_Comm comm, const char format[], ...)
   va_list args;
 
   va_start(args, format);
-  vsnprintf(line, sizeof(line), format, args);
+  vsnprintf(line, sizeof(line), format, args); /* NOLINT(clang-analyzer-valist.Uninitialized): it does not see va_start() */
   va_end(args);
   (void)comm;
   for (start = line; *start == ' ';) start++;

@@ -354,7 +354,7 @@ static PetscBool parse_line(AppHistory h, char *line, PetscBool header)
 /* Into h->message: the first column of a history.csv with this header that is not the table's. */
 static PetscErrorCode name_columns(AppHistory h, const char *header)
 {
-  char name[128];
+  char name[128] = "";
   size_t n = 0;
 
   PetscFunctionBegin;

@@ -153,14 +153,20 @@ int main(int argc, char **argv)
   AppErrors errors = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, "", ""};
   AppKnown known = {0, 0, NULL, PETSC_FALSE};
   int exitcode = 0, petscargc;
-  char **petscargv = malloc(((size_t)argc + 1) * sizeof(char *)), **list = petscargv;
+  char **petscargv, **list;
   PetscErrorCode ierr;
 
   if (argc > 1 && !strcmp(argv[1], "study")) return AppStudy(argc, argv);
-  if (!petscargv || MPI_Init(&argc, &argv)) return APP_EXIT_USER;
+  list = petscargv = malloc(((size_t)argc + 1) * sizeof(char *));
+  if (!list || MPI_Init(&argc, &argv)) {
+    free(list);
+    return APP_EXIT_USER;
+  }
   petscargc = petsc_arguments(argc, argv, petscargv);
-  if (PetscInitialize(&petscargc, &petscargv, NULL, NULL)) return APP_EXIT_USER;
-  if (AppErrorInstall(&errors)) return APP_EXIT_USER;
+  if (PetscInitialize(&petscargc, &petscargv, NULL, NULL) || AppErrorInstall(&errors)) {
+    free(list);
+    return APP_EXIT_USER;
+  }
   signal(SIGPIPE, SIG_DFL); /* frond -help | head */
   signal(SIGXFSZ, SIG_IGN); /* a file too large is an error of writing, reported in one line */
   ierr = execute(argc, argv, &errors, &known, &exitcode);

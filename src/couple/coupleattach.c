@@ -313,15 +313,16 @@ void CoupleAttachCopy(CoupleAttach l, PetscBool load, PetscReal *state)
 PetscErrorCode CoupleAttachMoveState(CoupleAttach l, FrondState *s)
 {
   PetscReal *x = NULL;
+  const FrondStateWay way = s->way;
   PetscInt n;
 
   PetscFunctionBegin;
   CoupleAttachCount(l, &n);
-  if (s->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
-  if (s->way == FROND_STATE_SAVE) CoupleAttachCopy(l, PETSC_FALSE, x);
+  if (way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
+  if (way == FROND_STATE_SAVE) CoupleAttachCopy(l, PETSC_FALSE, x);
   FrondMoveReal(s, "attach/state", x, n);
   FrondMoveInt(s, "attach/iterations", &l->iterations, 1);
-  if (s->way == FROND_STATE_LOAD) CoupleAttachCopy(l, PETSC_TRUE, x);
+  if (way == FROND_STATE_LOAD) CoupleAttachCopy(l, PETSC_TRUE, x);
   PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

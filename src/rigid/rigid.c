@@ -89,7 +89,7 @@ PetscErrorCode RigidAddBody(Rigid rigid, const RigidBodySpec *spec, PetscInt *bo
   for (PetscInt k = RigidShapeNumSizes(spec->shape, rigid->dim); k < 3; k++) b->spec.size[k] = 0.;
   if (rigid->dim == 2) b->spec.lock[2] = b->spec.lock[3] = b->spec.lock[4] = PETSC_TRUE;
   if (spec->geometry) PetscCall(RigidGeometryReference(spec->geometry));
-  if (spec->shape == RIGID_COMPOSITE) b->spec.density = spec->geometry->density;
+  if (spec->geometry && spec->shape == RIGID_COMPOSITE) b->spec.density = spec->geometry->density;
   b->volume = RigidShapeVolume(&b->spec, rigid->dim);
   if (body) *body = rigid->n;
   rigid->n++;
@@ -451,15 +451,16 @@ PetscErrorCode RigidUnpack(Rigid rigid, const PetscReal state[])
 PetscErrorCode RigidMoveState(Rigid rigid, FrondState *s)
 {
   PetscReal *x = NULL, t = rigid->t;
+  const FrondStateWay way = s->way;
   PetscInt n;
 
   PetscFunctionBegin;
   PetscCall(RigidGetPackSize(rigid, &n));
-  if (s->way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
-  if (s->way == FROND_STATE_SAVE) PetscCall(RigidPack(rigid, x));
+  if (way != FROND_STATE_COUNT) PetscCall(PetscMalloc1(n, &x));
+  if (way == FROND_STATE_SAVE) PetscCall(RigidPack(rigid, x));
   FrondMoveReal(s, "bodies/time", &t, 1);
   FrondMoveReal(s, "bodies/state", x, n);
-  if (s->way == FROND_STATE_LOAD) {
+  if (way == FROND_STATE_LOAD) {
     PetscCall(RigidSetTime(rigid, t));
     PetscCall(RigidUnpack(rigid, x));
   }

@@ -65,7 +65,7 @@ PetscErrorCode RigidMeshTree(RigidMesh *m)
 {
   PetscFunctionBegin;
   PetscCall(PetscMalloc1((size_t)m->nf, &m->order));
-  PetscCall(PetscCalloc1((size_t)(2 * m->nf), &m->node));
+  PetscCall(PetscCalloc1(2 * (size_t)m->nf, &m->node));
   for (PetscInt f = 0; f < m->nf; f++) m->order[f] = f;
   m->nnodes = 1;
   m->node[0].count = m->nf;

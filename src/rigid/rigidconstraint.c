@@ -63,7 +63,7 @@ static PetscErrorCode SystemLists(Rigid rigid)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1((size_t)(rigid->n + 2), &s->start));
-  PetscCall(PetscMalloc1((size_t)(2 * s->n), &s->entry));
+  PetscCall(PetscMalloc1(2 * (size_t)s->n, &s->entry));
   for (PetscInt r = 0; r < s->n; r++)
     for (int e = 0; e < 2; e++)
       if (RowEnd(rigid, r, e) != RIGID_GROUND) s->start[RowEnd(rigid, r, e) + 1]++;
@@ -123,9 +123,9 @@ PetscErrorCode RigidSystemCreate(Rigid rigid)
   }
   PetscCall(PetscMalloc4((size_t)s->n, &s->joint, (size_t)s->n, &s->local, (size_t)s->n, &s->row0, (size_t)s->n, &s->row1));
   PetscCall(PetscMalloc1((size_t)s->n, &s->drive));
-  PetscCall(PetscMalloc5((size_t)(12 * s->n), &s->W, (size_t)s->n, &s->lambda, (size_t)s->n, &s->res, (size_t)s->n, &s->length,
+  PetscCall(PetscMalloc5(12 * (size_t)s->n, &s->W, (size_t)s->n, &s->lambda, (size_t)s->n, &s->res, (size_t)s->n, &s->length,
                          (size_t)s->n, &s->active));
-  PetscCall(PetscMalloc2((size_t)(6 * rigid->n), &s->wrench, (size_t)rigid->n, &s->saved));
+  PetscCall(PetscMalloc2(6 * (size_t)rigid->n, &s->wrench, (size_t)rigid->n, &s->saved));
   for (PetscInt j = 0; j < rigid->njoints; j++)
     for (PetscInt k = 0; k < rigid->joint[j].nrows; k++) {
       s->joint[rigid->joint[j].first + k] = j;

@@ -147,7 +147,7 @@ static PetscErrorCode CopyParts(RigidGeometry g, PetscInt n, const RigidBodySpec
   PetscFunctionBegin;
   g->nparts = n;
   PetscCall(PetscMalloc1((size_t)n, &g->part));
-  PetscCall(PetscMalloc1((size_t)(4 * n), &g->partq));
+  PetscCall(PetscMalloc1(4 * (size_t)n, &g->partq));
   for (PetscInt i = 0; i < n; i++) {
     RigidBodySpec *p = &g->part[i];
     PetscReal v[3];

@@ -40,14 +40,14 @@ static PetscErrorCode Weld(PetscInt nf, const PetscReal corners[], RigidMesh *m)
 
   PetscFunctionBegin;
   m->nf = nf;
-  PetscCall(PetscMalloc1((size_t)(3 * nf), &c));
-  PetscCall(PetscMalloc1((size_t)(9 * nf), &m->x));
-  PetscCall(PetscMalloc1((size_t)(3 * nf), &m->tri));
+  PetscCall(PetscMalloc1(3 * (size_t)nf, &c));
+  PetscCall(PetscMalloc1(9 * (size_t)nf, &m->x));
+  PetscCall(PetscMalloc1(3 * (size_t)nf, &m->tri));
   for (PetscInt i = 0; i < 3 * nf; i++) {
     for (int k = 0; k < 3; k++) c[i].x[k] = corners[3 * i + k] + 0.; /* -0 becomes 0 */
     c[i].corner = i;
   }
-  qsort(c, (size_t)(3 * nf), sizeof(*c), CompareCorners);
+  qsort(c, 3 * (size_t)nf, sizeof(*c), CompareCorners);
   for (PetscInt i = 0; i < 3 * nf; i++) {
     if (i == 0 || c[i].x[0] != c[i - 1].x[0] || c[i].x[1] != c[i - 1].x[1] || c[i].x[2] != c[i - 1].x[2]) {
       PetscCall(PetscArraycpy(&m->x[3 * m->nv], c[i].x, 3));
@@ -73,9 +73,9 @@ static void FacetNormal(const RigidMesh *m, PetscInt f, PetscReal n[3])
 static PetscErrorCode FacetNormals(MPI_Comm comm, const char name[], RigidMesh *m)
 {
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1((size_t)(3 * m->nf), &m->nface));
-  PetscCall(PetscMalloc1((size_t)(9 * m->nf), &m->nedge));
-  PetscCall(PetscCalloc1((size_t)(3 * m->nv), &m->nvert));
+  PetscCall(PetscMalloc1(3 * (size_t)m->nf, &m->nface));
+  PetscCall(PetscMalloc1(9 * (size_t)m->nf, &m->nedge));
+  PetscCall(PetscCalloc1(3 * (size_t)m->nv, &m->nvert));
   for (PetscInt f = 0; f < m->nf; f++) {
     PetscReal *n = &m->nface[3 * f], norm;
     FacetNormal(m, f, n);
@@ -122,7 +122,7 @@ PetscErrorCode RigidMeshTopology(MPI_Comm comm, const char name[], RigidMesh *m)
 
   PetscFunctionBegin;
   PetscCall(FacetNormals(comm, name, m));
-  PetscCall(PetscMalloc1((size_t)(3 * m->nf), &e));
+  PetscCall(PetscMalloc1(3 * (size_t)m->nf, &e));
   for (PetscInt i = 0; i < 3 * m->nf; i++) {
     const PetscInt f = i / 3, k = i % 3, a = m->tri[i], b = m->tri[3 * f + (k + 1) % 3];
     e[i].lo = PetscMin(a, b);
@@ -130,7 +130,7 @@ PetscErrorCode RigidMeshTopology(MPI_Comm comm, const char name[], RigidMesh *m)
     e[i].facet = f;
     e[i].side = a < b ? k : -1 - k;
   }
-  qsort(e, (size_t)(3 * m->nf), sizeof(*e), CompareEdges);
+  qsort(e, 3 * (size_t)m->nf, sizeof(*e), CompareEdges);
   for (PetscInt i = 0, j; i < 3 * m->nf; i = j) {
     for (j = i + 1; j < 3 * m->nf && e[j].lo == e[i].lo && e[j].hi == e[i].hi; j++) {
     }
@@ -205,7 +205,7 @@ void RigidPrincipalAxes(const PetscReal A[9], PetscReal J[3], PetscReal q[4])
 static PetscErrorCode MeshBodyFrame(RigidGeometry g, const char name[])
 {
   RigidMesh *m = &g->mesh;
-  PetscReal VX[3], S[9], A[9], size = 0.;
+  PetscReal VX[3] = {0}, S[9], A[9], size = 0.;
 
   PetscFunctionBegin;
   for (int k = 0; k < 3; k++) g->center[k] = m->x[k];
@@ -316,8 +316,8 @@ PetscErrorCode RigidGeometryCreateMesh(MPI_Comm comm, PetscInt nv, const PetscRe
   m = &(*geometry)->mesh;
   m->nv = nv;
   m->nf = nf;
-  PetscCall(PetscMalloc1((size_t)(3 * nv), &m->x));
-  PetscCall(PetscMalloc1((size_t)(3 * nf), &m->tri));
+  PetscCall(PetscMalloc1(3 * (size_t)nv, &m->x));
+  PetscCall(PetscMalloc1(3 * (size_t)nf, &m->tri));
   PetscCall(PetscArraycpy(m->x, x, 3 * nv));
   PetscCall(PetscArraycpy(m->tri, facets, 3 * nf));
   PetscCall(MeshFinish(*geometry, "of the caller"));

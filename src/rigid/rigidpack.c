@@ -39,8 +39,8 @@ static PetscErrorCode BucketsCreate(Buckets *b, PetscInt dim, PetscReal dp, cons
   }
   PetscCall(PetscMalloc1((size_t)total, &b->head));
   for (PetscInt i = 0; i < total; i++) b->head[i] = -1;
-  b->next = NULL;
-  b->nnext = 0;
+  b->nnext = 256;
+  PetscCall(PetscMalloc1(b->nnext, &b->next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,7 +88,7 @@ static PetscErrorCode AddMarker(Buckets *b, RigidMarkers *m, const PetscReal x[3
 
   PetscFunctionBegin;
   if (m->n == b->nnext) {
-    b->nnext = 2 * b->nnext + 256;
+    b->nnext *= 2;
     PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)b->nnext, &b->next));
   }
   BucketOf(b, x, id);

@@ -97,7 +97,7 @@ static PetscErrorCode ReadText(MPI_Comm comm, const char filename[], char *data,
     for (int k = 0; k < 3; k++) (*corners)[n++] = (PetscReal)x[k];
   }
   PetscCheck(n > 0 && n % 9 == 0, comm, PETSC_ERR_FILE_UNEXPECTED,
-             "STL file %s: holds %g vertices; must be three for each facet, one facet at least", filename, (double)(n / 3));
+             "STL file %s: holds %g vertices; must be three for each facet, one facet at least", filename, (double)n / 3);
   *nf = (PetscInt)(n / 9);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,8 +8,8 @@
 PetscBool RigidShapeNormal(const RigidBodySpec *s, PetscInt dim, const PetscReal x[3], PetscReal step, PetscReal n[3])
 {
   PetscReal norm;
-  n[2] = 0.;
-  for (PetscInt k = 0; k < dim; k++) {
+  n[0] = n[1] = n[2] = 0.;
+  for (PetscInt k = 0; k < dim && k < 3; k++) {
     PetscReal p[3] = {x[0], x[1], x[2]}, m[3] = {x[0], x[1], x[2]};
     p[k] += step;
     m[k] -= step;

@@ -30,7 +30,7 @@ PetscErrorCode RigidSetMotionTable(Rigid rigid, PetscInt body, PetscInt n, const
   PetscCall(PetscFree(b->tabletime));
   PetscCall(PetscFree(b->table));
   PetscCall(PetscMalloc1((size_t)n, &b->tabletime));
-  PetscCall(PetscMalloc1((size_t)(6 * n), &b->table));
+  PetscCall(PetscMalloc1(6 * (size_t)n, &b->table));
   b->ntable = n;
   for (PetscInt i = 0; i < n; i++) {
     b->tabletime[i] = t[i];

@@ -118,10 +118,11 @@ static PetscErrorCode CountingSort(PetscInt n, const int *key, PetscInt nkeys, i
 #define SPH_SUB (1 << SPH_SUBBITS)
 #define SPH_NSUB (SPH_SUB * SPH_SUB * SPH_SUB)
 
-/* Number of point x along the Hilbert curve: Skilling, AIP Conf. Proc. 707 (2004), transposed index of `dim` axes of SPH_SUBBITS
- * bits. */
-static int HilbertNumber(int dim, const int p[3])
+/* Number of point x along the Hilbert curve: Skilling, AIP Conf. Proc. 707 (2004), transposed index of SPH_SUBBITS bits per axis.
+ */
+static int HilbertNumber(int axes, const int p[3])
 {
+  const int dim = PetscMin(axes, 3);
   int x[3] = {p[0], p[1], p[2]}, t = 0, number = 0;
 
   for (int q = SPH_SUB / 2; q > 1; q >>= 1)

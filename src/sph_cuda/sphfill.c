@@ -83,7 +83,7 @@ PetscErrorCode SphFillWalls(PetscInt dim, PetscReal dp, const PetscReal lo[3], c
       for (PetscInt i = a[0]; i < b[0]; i++) {
         const PetscInt s[3] = {i, j, k};
         PetscReal depth = 0.0;
-        for (int c = 0; c < dim; c++) depth = PetscMax(depth, DepthBelow(s[c], n[c], dp, face[2 * c], face[2 * c + 1]));
+        for (int c = 0; c < dim && c < 3; c++) depth = PetscMax(depth, DepthBelow(s[c], n[c], dp, face[2 * c], face[2 * c + 1]));
         if (depth <= 0.0) continue;
         for (int c = 0; c < 3; c++) x[3 * m + c] = c < dim ? lo[c] + ((PetscReal)s[c] + 0.5) * dp : 0.0;
         v[m] = vol;

@@ -103,7 +103,8 @@ SPH_INLINE int SphSelect(const int nq, sphreal *const *src, int first, int n, co
   }
   for (int q = 0; q < nq; q++) {
     const sphreal add = q < 3 ? off[q] : (sphreal)0;
-    for (int k = 0; k < found; k++) list[q][m + k] = src[q][in[k]] + add;
+    for (int k = 0; k < found; k++)
+      list[q][m + k] = src[q][in[k]] + add; /* NOLINT(clang-analyzer-core.uninitialized.ArraySubscript): found <= n */
   }
   return m + found;
 }
