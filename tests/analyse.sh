@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# analyse.sh [PIECE...]: analysers and sanitizers on our own code; without arguments all of: warnings cppcheck tidy valgrind.
+# analyse.sh [PIECE...]: analysers and sanitizers on our own code; without arguments: warnings cppcheck valgrind; also: tidy.
 # Builds in ANALYSE_FOLDER (default build_analyse); one line per piece says what passed. docs/testing.md explains.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -116,7 +116,7 @@ do_valgrind() {
   echo "valgrind: $(grep -h 'ERROR SUMMARY' "$folder"/valgrind.*.log | sed 's/.*SUMMARY: //' | sort | uniq -c | sed 's/^ *//')"
 }
 
-[ $# -gt 0 ] || set -- warnings cppcheck tidy valgrind
+[ $# -gt 0 ] || set -- warnings cppcheck valgrind
 for piece in "$@"; do
   seconds=$SECONDS
   "do_$piece"

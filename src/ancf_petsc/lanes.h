@@ -49,7 +49,7 @@ LANES_INLINE void LanesScatter(const int n, const RealLanes *y, PetscReal *const
 {
   int c = 0;
 #if defined(LANES_SHUFFLE)
-  #define LANES_PUT(p, lanes, k) LanesPut((p) + c, (RealPair)LANES_SHUFFLE(lanes, lanes, k, k + 1), add)
+  #define LANES_PUT(p, lanes, k) LanesPut((p) + c, (RealPair)LANES_SHUFFLE(lanes, lanes, k, (k) + 1), add)
   _Pragma("GCC unroll 6") for (; c + 1 < n; c += 2)
   {
     const RealLanes even = LANES_SHUFFLE(y[c], y[c + 1], 0, 8, 2, 10, 4, 12, 6, 14),

@@ -413,9 +413,13 @@ static PetscErrorCode points(const Chain *c, const Piece *p, PetscInt *m, PetscR
   for (PetscInt k = 0; k < p->n; k++) {
     const PetscInt line = c->order[p->first + k];
 
-    if (c->curved) PetscCall(PetscArraycpy(x + 3 * ++*m, c->middle + 3 * line, 3));
+    if (c->curved) {
+      ++*m;
+      PetscCall(PetscArraycpy(x + 3 * *m, c->middle + 3 * line, 3));
+    }
     v = other(c, line, v);
-    PetscCall(PetscArraycpy(x + 3 * ++*m, c->vertex + 3 * (v), 3));
+    ++*m;
+    PetscCall(PetscArraycpy(x + 3 * *m, c->vertex + 3 * (v), 3));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
