@@ -219,7 +219,7 @@ PetscErrorCode SphSetUp(Sph sph)
   sph->setup = PETSC_TRUE;
   PetscCall(SphOpeningsSetUp(sph));
   PetscCall((*sph->ops->build)(sph));
-  PetscCall(SphOpeningsApply(sph, 0.0));
+  PetscCall(SphOpeningsApply(sph, 0.0, 0.0));
   PetscCall((*sph->ops->rates)(sph));
   sph->evaluations = 0.0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -308,7 +308,7 @@ static PetscErrorCode EvaluateRates(Sph sph, PetscReal dt)
   PetscCall(PetscLogEventBegin(SPH_Build, 0, 0, 0, 0));
   if (!sph->insidestep) PetscCall((*sph->ops->build)(sph));
   PetscCall(PetscLogEventEnd(SPH_Build, 0, 0, 0, 0));
-  if (!sph->insidestep) PetscCall(SphOpeningsApply(sph, sph->t + 0.5 * dt));
+  if (!sph->insidestep) PetscCall(SphOpeningsApply(sph, sph->t + 0.5 * dt, dt));
   PetscCall((*sph->ops->rates)(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -393,7 +393,8 @@ static PetscErrorCode State_CPU(Sph sph, FrondState *s)
 }
 
 /* sph_cpuopen.c */
-extern PetscErrorCode SphFit_CPU(Sph sph, PetscInt n, const double *at, const double *offset, double *value, int *fluid);
+extern PetscErrorCode SphFit_CPU(Sph sph, PetscInt n, const double *at, const double *offset, const int *group, double *value,
+                                 int *near);
 
 const SphOps SphOps_CPU = {SetUp_CPU,  Build_CPU, Rates_CPU,  HalfStep_CPU, FullStep_CPU, Reinit_CPU,
                            Motion_CPU, Force_CPU, Limits_CPU, Pull_CPU,     Push_CPU,     Destroy_CPU,

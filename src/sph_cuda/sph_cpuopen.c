@@ -4,8 +4,8 @@ typedef double sphreal;
 #include "sph_cpu.h"
 #include "sphsearch.h"
 
-/* Sums over the fluid markers within 2h of x; those of zones are left out. */
-static void SumAround(Sph sph, const SphCpu *cpu, const double x[3], SphPointSums *sums)
+/* Sums over the markers of a group, fluid or zone, within 2h of x. */
+static void SumAround(Sph sph, const SphCpu *cpu, const double x[3], int group, SphPointSums *sums)
 {
   const SphGrid *g = &cpu->grid;
   const SphParams *p = &sph->par;
@@ -20,7 +20,7 @@ static void SumAround(Sph sph, const SphCpu *cpu, const double x[3], SphPointSum
     const int *range = cpu->cellstart + 2 * sph_cell_index(g, nx, ny, nz);
     for (int j = range[0]; j < range[1]; j++) {
       double d[3] = {0.0, 0.0, 0.0};
-      if (sph->group[j] != -1) continue;
+      if (sph->group[j] != group) continue;
       for (int k = 0; k < p->dim; k++) {
         d[k] = sph->st.x[k][j] - x[k];
         if (g->periodic[k]) d[k] -= g->length[k] * rint(d[k] / g->length[k]);
@@ -33,7 +33,7 @@ static void SumAround(Sph sph, const SphCpu *cpu, const double x[3], SphPointSum
   }
 }
 
-PetscErrorCode SphFit_CPU(Sph sph, PetscInt n, const double *at, const double *offset, double *value, int *fluid)
+PetscErrorCode SphFit_CPU(Sph sph, PetscInt n, const double *at, const double *offset, const int *group, double *value, int *near)
 {
   const SphCpu *cpu = (const SphCpu *)sph->data;
   const double h = sph->par.h;
@@ -43,8 +43,8 @@ PetscErrorCode SphFit_CPU(Sph sph, PetscInt n, const double *at, const double *o
   for (PetscInt j = 0; j < n; j++) {
     const double u[3] = {offset[3 * j] / h, offset[3 * j + 1] / h, offset[3 * j + 2] / h};
     SphPointSums sums;
-    SumAround(sph, cpu, at + 3 * j, &sums);
-    fluid[j] = SphPointValues(&sums, (int)sph->par.dim, 1, value + 10 * j) >= 0;
+    SumAround(sph, cpu, at + 3 * j, group ? group[j] : -1, &sums);
+    near[j] = SphPointValues(&sums, (int)sph->par.dim, 1, value + 10 * j) >= 0;
     (void)SphPointValuesAt(&sums, (int)sph->par.dim, 1, u, value + 10 * j + 5);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

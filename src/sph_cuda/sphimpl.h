@@ -105,8 +105,9 @@ typedef struct _SphOps {
   PetscErrorCode (*linkload)(Sph, PetscInt k, PetscReal *load, double *totals);
   PetscErrorCode (*rotation)(Sph, PetscInt group); /* sph->omega of the group changed; NULL: it is read where it is */
   /* sphopen.c: vx, vy, vz, p, s of a linear fit to the fluid around n points (n x 3, m), at the points and at an offset (n x 3,
-     m) from them (n x 2 x 5); fluid[]: whether there is any. NULL: there are no openings */
-  PetscErrorCode (*fit)(Sph, PetscInt n, const double *at, const double *offset, double *value, int *fluid);
+     m) from them (n x 2 x 5); group: to the markers of this group in place of the fluid, n, or NULL; near[]: whether there are
+     any. NULL: there are no openings */
+  PetscErrorCode (*fit)(Sph, PetscInt n, const double *at, const double *offset, const int *group, double *value, int *near);
 } SphOps;
 
 struct _p_Sph {

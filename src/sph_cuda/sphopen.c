@@ -237,12 +237,16 @@ static PetscErrorCode Collect(Sph sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Velocity and density of zone marker i from the fit's vx, vy, vz, p there; fluid 0: none is near. */
-static void Prescribe(Sph sph, const SphOpening *o, int i, const double value[10], double now, int fluid)
+/*
+  Velocity and density of zone marker i from the fits' vx, vy, vz, p; fluid 0: none is near. own: the fit to the zone itself,
+  where the marker is; part: of the change that is made now.
+*/
+static void Prescribe(Sph sph, const SphOpening *o, int i, const double value[10], const double own[3], double part, double now,
+                      int fluid)
 {
   const SphParams *p = &sph->par;
   const double x[3] = {sph->st.x[0][i], sph->st.x[1][i], sph->st.x[2][i]};
-  double c[3], pressure, vn = 0.0;
+  double c[3], pressure, vn = 0.0, vo = 0.0, change;
 
   SphOpeningCoordinates(o, x, c);
   if (o->spec.given == SPH_OPENING_VELOCITY) {
@@ -253,32 +257,43 @@ static void Prescribe(Sph sph, const SphOpening *o, int i, const double value[10
     for (int k = 0; k < 3; k++) {
       now += o->spec.gradient[k] * (x[k] - c[2] * o->normal[k] - o->spec.corner[k]);
       vn += value[k] * o->normal[k];
+      vo += own[k] * o->normal[k];
     }
+    change = part * (vn - vo + (now - value[8]) / (p->rho0 * p->cs));
+    vo = sph->st.v[0][i] * o->normal[0] + sph->st.v[1][i] * o->normal[1] + sph->st.v[2][i] * o->normal[2];
     for (int k = 0; k < 3 && fluid; k++)
-      sph->st.v[k][i] = (vn < 0.0 ? value[k] : vn * o->normal[k]) + (now - value[8]) / (p->rho0 * p->cs) * o->normal[k];
+      sph->st.v[k][i] = (vn < 0.0 ? value[k] - vn * o->normal[k] : 0.0) + (vo + change) * o->normal[k];
     pressure = fluid ? 2.0 * now - value[3] : now;
   }
   sph->st.s[i] = sph_eos_inverse(PetscMax(pressure - p->pb, -0.5 * p->B), p->B, p->gamma);
 }
 
-PetscErrorCode SphOpeningsApply(Sph sph, PetscReal t)
+PetscErrorCode SphOpeningsApply(Sph sph, PetscReal t, PetscReal dt)
 {
+  const double part = dt > 0.0 ? PetscMin(1.0, dt * sph->par.cs / sph->par.h) : 1.0;
   SphOpenings *all = sph->openings;
-  double *now;
-  int *fluid;
+  double *now, *own, *x;
+  int *fluid, *group, *near;
 
   PetscFunctionBegin;
   if (!all || !all->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(SPH_Open, 0, 0, 0, 0));
   PetscCall(Collect(sph));
-  PetscCall(PetscMalloc2(all->nzone, &fluid, all->n, &now));
-  PetscCall((*sph->ops->fit)(sph, all->nzone, all->at, all->offset, all->value, fluid));
+  PetscCall(PetscMalloc6(all->nzone, &fluid, all->n, &now, 10 * all->nzone, &own, 3 * all->nzone, &x, all->nzone, &group,
+                         all->nzone, &near));
+  for (PetscInt j = 0; j < all->nzone; j++) {
+    group[j] = sph->group[all->zone[j]];
+    if (all->opening[SPH_ZONE(group[j])].spec.given == SPH_OPENING_VELOCITY) group[j] = -2; /* not needed */
+    for (int k = 0; k < 3; k++) x[3 * j + k] = sph->st.x[k][all->zone[j]];
+  }
+  PetscCall((*sph->ops->fit)(sph, all->nzone, all->at, all->offset, NULL, all->value, fluid));
+  PetscCall((*sph->ops->fit)(sph, all->nzone, x, all->offset, group, own, near));
   for (PetscInt k = 0; k < all->n; k++) now[k] = ValueAt(&all->opening[k].spec, t);
   for (PetscInt j = 0; j < all->nzone; j++) {
     const int i = all->zone[j], k = SPH_ZONE(sph->group[i]);
-    Prescribe(sph, &all->opening[k], i, all->value + 10 * j, now[k], fluid[j]);
+    Prescribe(sph, &all->opening[k], i, all->value + 10 * j, own + 10 * j, part, now[k], fluid[j]);
   }
-  PetscCall(PetscFree2(fluid, now));
+  PetscCall(PetscFree6(fluid, now, own, x, group, near));
   PetscCall(PetscLogEventEnd(SPH_Open, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

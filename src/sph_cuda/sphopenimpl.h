@@ -31,8 +31,9 @@ static inline int SphIsZone(int group)
   return group <= -3;
 }
 
-/* sphopen.c: velocities and densities of the zones at time t (s), from the state now; the search structure must be there. */
-extern PetscErrorCode SphOpeningsApply(Sph sph, PetscReal t);
+/* sphopen.c: velocities and densities of the zones at time t (s) of a step of dt (s; 0 at set-up), from the state now; the search
+   structure must be there. */
+extern PetscErrorCode SphOpeningsApply(Sph sph, PetscReal t, PetscReal dt);
 /* Before the full step of dt (s) with the rates now: forces of the zones. */
 extern PetscErrorCode SphOpeningsForce(Sph sph, PetscReal dt);
 /* After it: markers that came in, went out, or go. */
