@@ -5,7 +5,7 @@
   al. (2018), Sect. 3. Velocity given: the fit's pressure is continued to the marker, p_o = p_g + (x_o - x_g) . grad p_g. Pressure
   given: p_o = 2 p - p_g, so that the pressure in the opening is the one given and its gradient that of the fluid; the velocity is
   that of the mirror image (no normal gradient), without the part along the opening where fluid comes in, and with the normal part
-  changed by (p - p_f)/(rho c_s), p_f the fit's pressure in the opening: the Riemann invariant that leaves the fluid is kept
+  off by (p - p_f)/(rho c_s), p_f the fit's pressure in the opening: the Riemann invariant that leaves the fluid is kept
   (Lastiwka, Basa, Quinlan, Int. J. Numer. Meth. Fluids 61 (2009)), else pressures would jump in the opening.
 */
 #include <math.h>
