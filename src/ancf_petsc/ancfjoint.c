@@ -79,12 +79,10 @@ static PetscErrorCode JointPlaces(Ancf ancf, PetscInt number)
   PetscFunctionBegin;
   for (PetscInt k = 0; k < j->n; k++) {
     const AncfBeam *b = &ancf->beams[j->beam[k]], *b0 = &ancf->beams[j->beam[0]];
-    const PetscReal *x, *x0 = ancf->e + 6 * j->at[0];
+    const PetscReal *x = ancf->e + 6 * (b->node + j->node[k]), *x0 = ancf->e + 6 * (b0->node + j->node[0]);
     PetscReal d[3], l = PetscMax(b->l, b0->l);
 
     j->at[k] = b->node + j->node[k];
-    if (k == 0) x0 = ancf->e + 6 * j->at[0];
-    x = ancf->e + 6 * j->at[k];
     PetscCheck(ancf->jointof[j->at[k]] < 0, ancf->comm, PETSC_ERR_ARG_INCOMP,
                "Joint %" PetscInt_FMT ": node %" PetscInt_FMT " of beam %" PetscInt_FMT " is in joint %" PetscInt_FMT
                " already; list all nodes that meet in one joint, each once",

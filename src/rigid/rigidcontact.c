@@ -52,7 +52,7 @@ static PetscErrorCode ContactCreate(Rigid rigid, PetscReal reach, PetscReal spac
     c->joined[c->njoined].i = PetscMin(rigid->joint[j].spec.a, rigid->joint[j].spec.b);
     c->joined[c->njoined++].j = PetscMax(rigid->joint[j].spec.a, rigid->joint[j].spec.b);
   }
-  qsort(c->joined, (size_t)c->njoined, sizeof(Pair), RigidComparePairs);
+  if (c->njoined) qsort(c->joined, (size_t)c->njoined, sizeof(Pair), RigidComparePairs);
   for (PetscInt i = 0; i < rigid->n; i++) {
     const RigidBodySpec *s = &rigid->body[i].spec;
     c->radius[i] = BoundingRadius(s, rigid->dim);
