@@ -116,6 +116,65 @@ do_valgrind() {
   echo "valgrind: $(grep -h 'ERROR SUMMARY' "$folder"/valgrind.*.log | sed 's/.*SUMMARY: //' | sort | uniq -c | sed 's/^ *//')"
 }
 
+# run_all LOG SECONDS PROGRAM...: two at a time, one thread each unless OMP_NUM_THREADS says otherwise; the failed ones are named in LOG.
+run_all() {
+  local log=$1 limit=$2
+  shift 2
+  rm -f "$log" "$log".*.out
+  printf '%s\n' "$@" | LOG="$log" LIMIT="$limit" xargs -P "$jobs" -n 1 sh -c \
+    'timeout "$LIMIT" "$0" >"$LOG.$(basename "$0").out" 2>&1 || { echo "$(basename "$0"): exit code $?"; tail -n 40 "$LOG.$(basename "$0").out"; }' >"$log" 2>&1
+}
+
+# AddressSanitizer and UndefinedBehaviorSanitizer: the C unit tests, a coupled run and its restart. Leaks are not looked for: Open MPI has many.
+do_asan() {
+  local tests n
+  configure asan -DCMAKE_C_COMPILER=clang -DCMAKE_C_FLAGS="-O1" -DFROND_SANITIZE=address,undefined -DBUILD_TESTING=ON
+  tests=$(unit_tests asan)
+  n=$(echo "$tests" | wc -l)
+  build asan frond_app $tests
+  export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 OMP_NUM_THREADS=1
+  run_all "$folder/asan.tests" 600 $(printf "$folder/asan/tests/%s " $tests)
+  [ ! -s "$folder/asan.tests" ] || { cat "$folder/asan.tests"; fail "asan"; }
+  short_run "$folder/asan/bin/frond" >"$folder/asan.run" 2>&1 || { tail -n 60 "$folder/asan.run"; fail "asan: frond run"; }
+  unset ASAN_OPTIONS UBSAN_OPTIONS OMP_NUM_THREADS
+  echo "asan: no report of AddressSanitizer and UndefinedBehaviorSanitizer in $n unit tests, a run and its restart"
+}
+
+# ThreadSanitizer with Archer, which tells it of OpenMP's barriers: a coupled run with two threads.
+do_tsan() {
+  local archer
+  archer=$(ls /usr/lib/llvm-*/lib/libarcher.so 2>/dev/null | sort -V | tail -n 1)
+  [ -n "$archer" ] || fail "tsan: no libarcher.so (Debian: libomp-dev)"
+  configure tsan -DCMAKE_C_COMPILER=clang -DCMAKE_C_FLAGS="-O1" -DFROND_SANITIZE=thread -DBUILD_TESTING=OFF
+  build tsan frond_app
+  export OMP_TOOL_LIBRARIES=$archer TSAN_OPTIONS=ignore_noninstrumented_modules=1:exitcode=66 OMP_NUM_THREADS=2
+  short_run "$folder/tsan/bin/frond" >"$folder/tsan.run" 2>&1 || { head -n 100 "$folder/tsan.run"; fail "tsan"; }
+  unset OMP_TOOL_LIBRARIES TSAN_OPTIONS OMP_NUM_THREADS
+  echo "tsan: no race in a run with two threads and its restart"
+}
+
+# Lines and branches of src that the C unit tests, some tests of the command and a restart reach; tests fail elsewhere, here they only count.
+do_coverage() {
+  local tests name
+  configure coverage -DCMAKE_C_FLAGS="--coverage -O1 -g" -DBUILD_TESTING=ON
+  tests=$(unit_tests coverage)
+  build coverage frond_app $tests
+  find "$folder/coverage" -name '*.gcda' -delete
+  export OMP_NUM_THREADS=1
+  for name in run mesh probes sections motion links help; do
+    printf '#!/bin/sh\nexec /usr/bin/python3 %s %s %s %s\n' "$PWD/tests/app_$name.py" "$folder/coverage/bin/frond" "$folder/coverage/app_$name" "$PWD" >"$folder/coverage/app_$name.sh"
+    chmod +x "$folder/coverage/app_$name.sh"
+  done
+  run_all "$folder/coverage.tests" 300 $(printf "$folder/coverage/tests/%s " $tests) "$folder"/coverage/app_*.sh
+  short_run "$folder/coverage/bin/frond" >"$folder/coverage.run" 2>&1 || true
+  unset OMP_NUM_THREADS
+  gcovr -r . --filter src/ "$folder/coverage" -j "$jobs" --exclude-unreachable-branches --print-summary --fail-under-line 90 --txt "$folder/coverage.txt" >"$folder/coverage.sum" || {
+    cat "$folder/coverage.txt" "$folder/coverage.sum"
+    fail "coverage of lines below 90 %"
+  }
+  echo "coverage: $(grep -E '^(lines|branches)' "$folder/coverage.sum" | tr '\n' ' ')"
+}
+
 [ $# -gt 0 ] || set -- warnings cppcheck valgrind
 for piece in "$@"; do
   seconds=$SECONDS

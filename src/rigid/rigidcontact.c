@@ -269,7 +269,7 @@ static PetscReal WallGap(const RigidWall *w, PetscReal step, const PetscReal x[3
     n[k] = w->gap(a, w->ctx) - w->gap(b, w->ctx);
   }
   norm = n ? Vec3Norm(n) : 0.;
-  for (int k = 0; k < 3 && norm > 0.; k++) n[k] /= norm;
+  for (int k = 0; k < 3 && n && norm > 0.; k++) n[k] /= norm;
   return w->gap(x, w->ctx);
 }
 

@@ -317,7 +317,7 @@ void RigidJointRows(Rigid rigid, RigidJoint *j, RigidRow row[])
     BendRows(j, &a, &b, &row[3]);
   }
   for (PetscInt r = 0; r < j->nrows; r++)
-    if (!j->hard[r]) row[r].g -= j->rest[soft++];
+    if (!j->hard[r]) row[r].g -= j->rest[soft++]; /* NOLINT(clang-analyzer-core.uninitialized.Assign): one of the types */
 }
 
 static PetscErrorCode CheckJoint(Rigid rigid, PetscInt joint)

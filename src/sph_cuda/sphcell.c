@@ -65,7 +65,7 @@ static inline int SortKey(Sph sph, const SphGrid *g, PetscInt i)
   return 2 * sph_cell_index(g, cx, cy, cz) + (sph->group[i] >= 0 ? 1 : 0);
 }
 
-/* array[i] = array[from[i]] for an array of a type, or none. */
+/* array[i] = array[from[i]] for an array of a type, or none. NOLINTBEGIN(bugprone-macro-parentheses) */
 #define SPH_PERMUTE(name, type)                                                                                                  \
   static void name(type *array, void *scratch, const int *from, PetscInt n)                                                      \
   {                                                                                                                              \
@@ -74,6 +74,7 @@ static inline int SortKey(Sph sph, const SphGrid *g, PetscInt i)
     _Pragma("omp parallel for schedule(static)") for (PetscInt i = 0; i < n; i++) work[i] = array[from[i]];                      \
     _Pragma("omp parallel for schedule(static)") for (PetscInt i = 0; i < n; i++) array[i] = work[i];                            \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 SPH_PERMUTE(PermuteDouble, double)
 SPH_PERMUTE(PermuteFloat, float)
 SPH_PERMUTE(PermuteInt, int)
