@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# analyse.sh [PIECE...]: analysers and sanitizers on our own code; without arguments: warnings cppcheck valgrind; also: tidy.
+# analyse.sh [PIECE...]: analysers and sanitizers on our own code; without arguments: warnings cppcheck valgrind tsan; also: tidy asan coverage.
 # Builds in ANALYSE_FOLDER (default build_analyse); one line per piece says what passed. docs/testing.md explains.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -175,7 +175,7 @@ do_coverage() {
   echo "coverage: $(grep -E '^(lines|branches)' "$folder/coverage.sum" | tr '\n' ' ')"
 }
 
-[ $# -gt 0 ] || set -- warnings cppcheck valgrind
+[ $# -gt 0 ] || set -- warnings cppcheck valgrind tsan
 for piece in "$@"; do
   seconds=$SECONDS
   "do_$piece"
