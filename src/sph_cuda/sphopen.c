@@ -102,7 +102,7 @@ PetscErrorCode SphAddReserve(Sph sph, PetscInt n)
   PetscFunctionBegin;
   PetscCheck(n >= 0, sph->comm, PETSC_ERR_ARG_OUTOFRANGE, "reserve of %" PetscInt_FMT " markers: must be >= 0", n);
   PetscCall(MakeOpenings(sph));
-  PetscCall(PetscMalloc1(3 * n, &x));
+  PetscCall(PetscMalloc1(3 * (size_t)n, &x));
   for (PetscInt i = 0; i < 3 * n; i++) x[i] = sph->par.lo[i % 3];
   PetscCall(SphAppendFluid(sph, n, x, NULL, NULL, -2));
   PetscCall(PetscFree(x));
@@ -219,7 +219,8 @@ static PetscErrorCode Collect(Sph sph)
     PetscCall(PetscFree(all->zone));
     if (all->at) PetscCall(PetscFree3(all->at, all->offset, all->value));
     PetscCall(PetscMalloc1(all->cap, &all->zone));
-    PetscCall(PetscMalloc3(3 * all->cap, &all->at, 3 * all->cap, &all->offset, 10 * all->cap, &all->value));
+    PetscCall(
+        PetscMalloc3(3 * (size_t)all->cap, &all->at, 3 * (size_t)all->cap, &all->offset, 10 * (size_t)all->cap, &all->value));
   }
   all->nzone = 0;
   for (PetscInt i = 0; i < sph->n; i++) {
@@ -279,8 +280,8 @@ PetscErrorCode SphOpeningsApply(Sph sph, PetscReal t, PetscReal dt)
   if (!all || !all->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(SPH_Open, 0, 0, 0, 0));
   PetscCall(Collect(sph));
-  PetscCall(PetscMalloc6(all->nzone, &fluid, all->n, &now, 10 * all->nzone, &own, 3 * all->nzone, &x, all->nzone, &group,
-                         all->nzone, &near));
+  PetscCall(PetscMalloc6(all->nzone, &fluid, all->n, &now, 10 * (size_t)all->nzone, &own, 3 * (size_t)all->nzone, &x, all->nzone,
+                         &group, all->nzone, &near));
   for (PetscInt j = 0; j < all->nzone; j++) {
     group[j] = sph->group[all->zone[j]];
     if (all->opening[SPH_ZONE(group[j])].spec.given == SPH_OPENING_VELOCITY) group[j] = -2; /* not needed */

@@ -72,7 +72,7 @@ PetscErrorCode SphOpeningSites(Sph sph, const SphOpeningSpec *spec, PetscInt *n,
   PetscFunctionBegin;
   PetscCall(SphOpeningFrame(sph, spec, &o));
   layers = (PetscInt)floor(o.depth / dp + 0.5);
-  PetscCall(PetscMalloc1(3 * layers * o.sites[0] * o.sites[1], &x));
+  PetscCall(PetscMalloc1(3 * (size_t)layers * (size_t)o.sites[0] * (size_t)o.sites[1], &x));
   for (PetscInt l = 0; l < layers; l++)
     for (PetscInt j = 0; j < o.sites[1]; j++)
       for (PetscInt i = 0; i < o.sites[0]; i++, m++)
