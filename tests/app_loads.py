@@ -1,5 +1,6 @@
 """app_loads.py FROND FOLDER SOURCE - permanent loads of beams in a scene, against beam theory and the elastica; what is refused."""
 import math
+import re
 import sys
 
 import apptest
@@ -114,6 +115,23 @@ impulse = 2 * 0.15 * 0.01
 off = max(abs(h["momentum_residual_" + a][-1] - still["momentum_residual_" + a][-1]) for a in "xyz")
 print("momentum in a fluid: residual off by %.3g of %.3g N s" % (off, impulse))
 check(off < 1e-2 * impulse, "momentum with a line load: residual off by %g kg m/s" % off)
+
+# A load that one iteration of Newton's method cannot follow: smaller steps come first, then one line that names beam, element, node and time,
+# with the last checkpoint to go on from.
+frond.write("steep.yaml", HEAD + """
+beams: [calm, steep]
+beam_end0: clamp
+beam_calm: {point_load: [0, %g, 0]}
+beam_steep: {point_load: [0, 1e15, 0], load_ramp: 10}
+time_step: 0.01
+time_end: 1
+""" % (EI / L**2))
+rc, out, err = frond("run", "steep.yaml", "-ancf_snes_max_it", "1", "-checkpoint_every", "0.02")
+check(rc == 2 and re.fullmatch(r"frond: error: Newton failed \(\w+\) at t = \S+ s even with the step halved down to \S+ s: largest residual \S+ N at beam 1, "
+                               r"element \d+ of \d+, node \d+; use a smaller step .*", err.strip()), "Newton's failure: exit code %d, %s" % (rc, err.strip()[:400]))
+saved = re.search(r"checkpoint of step \d+, t = \S+ s: go on with -restart (\S+)", out)
+if check(saved, "Newton's failure: no checkpoint offered: " + out[-400:]):
+    frond.runs("run", "steep.yaml", "-restart", saved.group(1), "-restart_changed", "-beam_steep_point_load", "0,1,0", "-time_end", "0.05")
 
 BAD = HEAD + "beams: rod\nbeam_rod: {end0: clamp, %s}\ntime_step: 0.01\ntime_end: 0.01\n"
 for text, words in (
