@@ -99,10 +99,10 @@ static PetscErrorCode put_beams(AppHistory h, App *app)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tips of the lumped beams, in the columns that ANCF beams have too, and coordinates of the joints. */
+/* Tips of the lumped beams, in the columns that ANCF beams have too, coordinates of the joints and how well they are met. */
 static PetscErrorCode put_lumped(AppHistory h, App *app)
 {
-  PetscReal r[3], v[3], coordinate;
+  PetscReal r[3], v[3], coordinate, off[2];
   char stem[96];
 
   PetscFunctionBegin;
@@ -120,6 +120,11 @@ static PetscErrorCode put_lumped(AppHistory h, App *app)
     PetscCall(RigidGetJointState(app->rigid, j->joint, &coordinate, NULL));
     PetscCall(PetscSNPrintf(stem, sizeof(stem), "%s_coordinate", j->name));
     PetscCall(put(h, stem, angle ? "rad" : "m", "angle, shift or elongation of the joint", coordinate));
+  }
+  if (app->scene.njoints || app->scene.nlumped) {
+    PetscCall(RigidGetJointError(app->rigid, &off[0], &off[1]));
+    PetscCall(put(h, "joints_constraint_position", "m", "largest violation of the bodies' joints (directions: rad)", off[0]));
+    PetscCall(put(h, "joints_constraint_velocity", "m/s", "the same of velocities (directions: rad/s)", off[1]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
