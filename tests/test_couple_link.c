@@ -1,6 +1,6 @@
 /*
-  test_couple_link.c - couple_transfer generalised against markers: a beam, a free body, a fixed one and a moving wall in a fluid
-  that is periodic in x and y. -type cuda runs it on a device; test_couple_link_shim on the host's stand-in for one.
+  test_couple_link.c - couple_transfer generalised against markers: a beam, a free body, a fixed one, a sliding and a moving wall
+  in a fluid that is periodic in x and y. -type cuda runs it on a device; test_couple_link_shim on the host's stand-in for one.
 
   Both ways are the same equations; differences of round-off grow to at most 3e-8 of each field's scale in 10 steps (derived in
   test_cuda_device.c; double precision).
@@ -17,7 +17,7 @@
 #define STEPS 10
 
 static const double hi[3] = {0.3, 0.28, 0.24}, ball[2][4] = {{0.1, 0.08, 0.1, 0.04}, {0.22, 0.06, 0.16, 0.03}}, beam_y = 0.2,
-                    beam_z = 0.12, beam_r = 0.02;
+                    beam_z = 0.12, beam_r = 0.02, floor_v[3] = {0.2, 0.1, 0.0};
 static char type[16] = SPHCPU;
 
 typedef struct {
@@ -79,7 +79,7 @@ static PetscErrorCode Add(System *s, CoupleSurface surface)
 
 static PetscErrorCode MakeWalls(System *s, PetscReal support)
 {
-  const PetscReal lo[3] = {0, 0, 0}, velocity[2][3] = {{0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}};
+  const PetscReal lo[3] = {0, 0, 0}, velocity[2][3] = {{floor_v[0], floor_v[1], floor_v[2]}, {0.5, 0.0, 0.0}};
   const PetscBool per[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_FALSE};
 
   PetscFunctionBegin;
@@ -91,6 +91,7 @@ static PetscErrorCode MakeWalls(System *s, PetscReal support)
     face[4 + w] = PETSC_TRUE;
     PetscCall(SphFillWalls(3, DP, lo, hi, face, per, support, &n, &x, &volume, &depth));
     PetscCall(CoupleSurfaceCreateWall(PETSC_COMM_SELF, w ? "lid" : "floor", n, x, volume, depth, velocity[w], &surface));
+    PetscCall(CoupleSurfaceSetSliding(surface, w ? PETSC_FALSE : PETSC_TRUE));
     PetscCall(Add(s, surface));
     PetscCall(PetscFree(x));
     PetscCall(PetscFree(volume));
@@ -280,6 +281,29 @@ static PetscErrorCode CheckMarkers(System *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The floor slides: its markers are where the filling put them, layers of DP below z = 0, and have its velocity; the lid's have
+ * moved. */
+static PetscErrorCode CheckWalls(System *s)
+{
+  const PetscReal *x, *v, *f;
+  PetscInt n, moved = 0, bad = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt w = 0; w < 2; w++) {
+    PetscCall(CoupleGetMarkers(s->couple, w, &n, &x, &v, &f));
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscReal cell = x[3 * j] / DP - 0.5;
+      if (w)
+        moved += fabs(cell - round(cell)) * DP > 1e-6;
+      else
+        bad += !(fabs(cell - round(cell)) < 1e-12 && v[3 * j] == floor_v[0] && v[3 * j + 1] == floor_v[1] && v[3 * j + 2] == 0.0);
+    }
+    TEST(w ? moved == n : bad == 0, "wall %d of %d markers: %d off the place or speed, %d moved", (int)w, (int)n, (int)bad,
+         (int)moved);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode TestSame(void)
 {
   PetscReal *d[2];
@@ -293,6 +317,7 @@ static PetscErrorCode TestSame(void)
     PetscCall(Dump(&s, &n, &d[k]));
     PetscCall(CheckAudit(&s));
     PetscCall(CheckMarkers(&s));
+    PetscCall(CheckWalls(&s));
     PetscCall(Destroy(&s));
   }
   PetscCall(Compare(d[0], d[1], n, "generalised transfer against markers"));

@@ -329,10 +329,6 @@ PetscErrorCode AppBuildOpenings(App *app, PetscReal *brought, PetscInt *zone);
 PetscErrorCode AppBuildReserve(App *app, PetscReal brought, PetscInt zone);
 PetscErrorCode AppOpeningDepth(const App *app, PetscInt face, PetscReal *depth);
 
-/* appwall.c */
-PetscErrorCode AppWallCreate(const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume, const PetscReal *depth,
-                             const PetscReal velocity[3], CoupleSurface *surface);
-
 /* appcsv.c: a table over time. */
 typedef struct {
   PetscInt n;

@@ -141,6 +141,16 @@ static PetscInt wall_face(const AppScene *s, PetscInt dim, const PetscReal x[3])
   return moving;
 }
 
+/* A wall of n markers (x: n x 3, m; volume: n; depth: n, m; all copied) with a velocity (m/s) along itself. */
+static PetscErrorCode create_wall(const char name[], PetscInt n, const PetscReal *x, const PetscReal *volume,
+                                  const PetscReal *depth, const PetscReal velocity[3], CoupleSurface *surface)
+{
+  PetscFunctionBegin;
+  PetscCall(CoupleSurfaceCreateWall(PETSC_COMM_SELF, name, n, x, volume, depth, velocity, surface));
+  PetscCall(CoupleSurfaceSetSliding(*surface, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode add_walls(App *app)
 {
   AppScene *s = &app->scene;
@@ -181,7 +191,7 @@ static PetscErrorCode add_walls(App *app)
     if (s->walls[f].motion[0])
       PetscCall(AppWallCreateMoving(app, f, name, m, fx, fvolume, fdepth, &surface));
     else
-      PetscCall(AppWallCreate(name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
+      PetscCall(create_wall(name, m, fx, fvolume, fdepth, s->wallvelocity[f], &surface));
     PetscCall(add_surface(app, SURFACE_WALL, name, surface));
   }
   PetscCall(PetscFree3(fx, fvolume, fdepth));
@@ -215,7 +225,7 @@ static PetscErrorCode add_region_walls(App *app)
     }
     if (!m) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "region_%s", s->regions[r].name));
-    PetscCall(AppWallCreate(name, m, rx, rvolume, rdepth, rest, &surface));
+    PetscCall(create_wall(name, m, rx, rvolume, rdepth, rest, &surface));
     PetscCall(add_surface(app, SURFACE_WALL, name, surface));
   }
   PetscCall(PetscFree3(rx, rvolume, rdepth));

@@ -119,6 +119,11 @@ FROND_EXTERN PetscErrorCode CoupleSurfaceCreateMoving(Rigid rigid, PetscInt body
 FROND_EXTERN PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscInt n, const PetscReal *x,
                                                     const PetscReal *volume, const PetscReal *depth, const PetscReal velocity[3],
                                                     CoupleSurface *surface);
+/*
+  A wall that moves along itself covers the same place at all times: its markers stay where they are and carry the velocity only,
+  as the lid across a closed box. surface: of CoupleSurfaceCreateWall(), before CoupleSetUp(). sliding: PETSC_FALSE by default.
+*/
+FROND_EXTERN PetscErrorCode CoupleSurfaceSetSliding(CoupleSurface surface, PetscBool sliding);
 
 /*
   What goes to and fro between beams and bodies, see CoupleAttachGetExchange() and CoupleShortGetExchange(). Sums begin at set-up.

@@ -73,7 +73,14 @@ typedef struct {
   PetscInt n;
   PetscReal *x, *volume, *depth;
   PetscReal velocity[3], t;
+  PetscBool sliding; /* the markers stay: t is of no account */
 } Wall;
+
+/* How far (m) the markers are from where they began, dt after the wall's time. */
+static PetscReal WallPath(const Wall *w, PetscReal dt, int k)
+{
+  return w->sliding ? 0.0 : (w->t + dt) * w->velocity[k];
+}
 
 static PetscErrorCode GetMarkers_Wall(CoupleSurface s, PetscInt *n, const PetscReal **x, const PetscReal **volume,
                                       const PetscReal **depth)
@@ -95,7 +102,7 @@ static PetscErrorCode Kinematics_Wall(CoupleSurface s, PetscReal dt, PetscReal *
   PetscFunctionBegin;
   for (PetscInt i = 0; i < w->n; i++)
     for (int k = 0; k < 3; k++) {
-      x[3 * i + k] = w->x[3 * i + k] + (w->t + dt) * w->velocity[k];
+      x[3 * i + k] = w->x[3 * i + k] + WallPath(w, dt, k);
       v[3 * i + k] = w->velocity[k];
       a[3 * i + k] = 0.0;
     }
@@ -117,7 +124,7 @@ static PetscErrorCode LinkState_Wall(CoupleSurface s, PetscReal dt, PetscReal *s
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(state, SECTION_BODY_STATE));
   for (int k = 0; k < 3; k++) {
-    state[k] = (w->t + dt) * w->velocity[k];
+    state[k] = WallPath(w, dt, k);
     state[3 + k] = w->velocity[k];
     state[15 + 4 * k] = 1.0;
   }
@@ -155,20 +162,23 @@ static PetscErrorCode Advance_Wall(CoupleSurface s, PetscReal t)
 
 static PetscErrorCode StateSize_Wall(CoupleSurface s, PetscInt *n)
 {
-  (void)s;
-  *n = 1;
+  *n = ((Wall *)s->ctx)->sliding ? 0 : 1;
   return PETSC_SUCCESS;
 }
 
 static PetscErrorCode Save_Wall(CoupleSurface s, PetscReal *state)
 {
-  *state = ((Wall *)s->ctx)->t;
+  const Wall *w = (const Wall *)s->ctx;
+
+  if (!w->sliding) *state = w->t;
   return PETSC_SUCCESS;
 }
 
 static PetscErrorCode Load_Wall(CoupleSurface s, const PetscReal *state)
 {
-  ((Wall *)s->ctx)->t = *state;
+  Wall *w = (Wall *)s->ctx;
+
+  if (!w->sliding) w->t = *state;
   return PETSC_SUCCESS;
 }
 
@@ -177,8 +187,9 @@ static PetscErrorCode View_Wall(CoupleSurface s, PetscViewer viewer)
   const Wall *w = (const Wall *)s->ctx;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  wall %s: %" PetscInt_FMT " markers, velocity (%g, %g, %g) m/s\n", s->name, w->n,
-                                   (double)w->velocity[0], (double)w->velocity[1], (double)w->velocity[2]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  wall %s: %" PetscInt_FMT " markers, %s (%g, %g, %g) m/s\n", s->name, w->n,
+                                   w->sliding ? "sliding with" : "velocity", (double)w->velocity[0], (double)w->velocity[1],
+                                   (double)w->velocity[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -220,5 +231,14 @@ PetscErrorCode CoupleSurfaceCreateWall(MPI_Comm comm, const char name[], PetscIn
   w->n = n;
   PetscCall(CoupleSurfaceCreate(comm, name, &ops, w, surface));
   PetscCall(CoupleSurfaceSetHeld(*surface, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CoupleSurfaceSetSliding(CoupleSurface surface, PetscBool sliding)
+{
+  PetscFunctionBegin;
+  PetscCheck(surface->ops.advance == Advance_Wall, surface->comm, PETSC_ERR_ARG_WRONG,
+             "CoupleSurfaceSetSliding(): surface %s is not of CoupleSurfaceCreateWall()", surface->name);
+  ((Wall *)surface->ctx)->sliding = sliding;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
