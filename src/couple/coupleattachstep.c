@@ -157,9 +157,10 @@ static PetscErrorCode Answer(CoupleAttach l)
   for (PetscInt k = 0; k < 6 * l->nfree; k++) l->G[k] = 0;
   for (PetscInt i = 0; i < l->n; i++) {
     const Attachment *a = &l->a[i];
-    PetscReal X[3], arm[3], aF[3], *G = l->G + 6 * a->unknown;
+    PetscReal X[3], arm[3], aF[3], *G;
 
     if (a->unknown < 0) continue;
+    G = l->G + 6 * a->unknown;
     PetscCall(RigidGetState(l->rigid, a->body, X, NULL, NULL, NULL));
     for (int c = 0; c < 3; c++) arm[c] = 0.5 * (a->x0[c] + a->x1[c]) - 0.5 * (l->X[3 * a->unknown + c] + X[c]);
     CoupleCross(arm, a->F, aF);

@@ -48,7 +48,7 @@ PetscErrorCode CoupleShortAccount(CoupleShort c)
   PetscCall(AncfGetState(c->ancf, NULL, &e, NULL, NULL));
   for (PetscInt k = 0; k < c->npairs; k++) {
     const ShortPair *p = &c->pair[k];
-    const PetscReal *x = c->place + 6 * PetscMax(0, p->body), f = p->elastic + p->heat;
+    const PetscReal *x = p->body >= 0 ? c->place + 6 * p->body : NULL, f = p->elastic + p->heat;
     PetscReal beams = Along(p, e) - p->start, body = 0., X[3], w[3], turn[3], mid[3], t[3], F[3];
     RigidBodySpec spec;
     for (int i = 0; i < 3; i++) F[i] = f * p->n[i];
