@@ -209,6 +209,30 @@ def run_of_four():
     check(not glob.glob(frond.path("four", "*.part")), "no unfinished file is left")
 
 
+def at_the_end():
+    """A run that was killed after its last checkpoint, before its last files: the restart makes them without a step."""
+    args = ["run", "all.yaml", "-sph_dt", "1e-4", "-time_end", "4e-3", "-output_every", "1e-3", "-checkpoint_every", "1e-3", "-output_dir"]
+    shutil.copytree(frond.path("four"), frond.path("ended"))
+    os.remove(frond.path("ended", "history.h5"))
+    os.remove(frond.path("ended", "run.xdmf"))
+    out = frond.runs(*args, "ended", "-restart", "ended")
+    check("step 40" in out and "after 40 steps" in out, "a restart at time_end: " + out)
+    same_run("four", "ended", "restart at time_end")
+    with open(frond.path("four", "run.xdmf")) as f, open(frond.path("ended", "run.xdmf")) as g:
+        check(f.read() == g.read(), "restart at time_end: run.xdmf")
+    # a number of the history that is none
+    rows = open(frond.path("ended", "history.csv")).read().splitlines()
+    for bad in ("nan", "-inf", "1e999"):
+        cells = rows[5].split(",")
+        cells[3] = bad
+        with open(frond.path("ended", "history.csv"), "w") as f:
+            f.write("\n".join([*rows[:5], ",".join(cells), *rows[6:]]) + "\n")
+        frond.refuses([*args, "ended", "-restart", "ended"], ["history.csv", "not that of the checkpoint"], code=3)
+    # into a new folder there is nothing to write
+    out = frond.runs(*args, "ended_new", "-restart", "four")
+    check("after 40 steps" in out and not frames("ended_new"), "a restart at time_end into a new folder: " + out)
+
+
 GO_ON = ["run", "all.yaml", "-sph_dt", "1e-4", "-output_every", "1e-3", "-time_end", "5e-3", "-output_dir", "never", "-restart"]
 
 
@@ -253,7 +277,7 @@ def other_scene():
                         (["-sph_dp", "0.02"], ["was sph_dp 0.04"])):
         frond.refuses([*GO_ON, "four", *args], words)
     frond.refuses([*GO_ON, "four", "-sph_dp", "0.02", "-restart_changed"], ["of another scene|saved fluid has"], code=None)
-    frond.refuses([*GO_ON[:7], "4e-3", *GO_ON[8:], "four"], ["not before time_end"])
+    frond.refuses([*GO_ON[:7], "3.9e-3", *GO_ON[8:], "four"], ["0.004 s is after time_end = 0.0039"])
     for args, words in ((["-checkpoint_every", "-2"], ["checkpoint_every = -2", ">= 0"]), (["-checkpoint_keep", "0"], ["checkpoint_keep = 0", "at least 1"])):
         frond.refuses(["run", "all.yaml", "-time_end", "1e-3", *args], words)
     out = frond.runs(*GO_ON[:8], "-output_dir", "more", "-restart", "four", "-sph_viscosity", "2", "-restart_changed")
@@ -270,6 +294,7 @@ if __name__ == "__main__":
     variants()
     others()
     run_of_four()
+    at_the_end()
     damaged()
     other_scene()
     apptest.report()

@@ -150,8 +150,9 @@ PetscErrorCode AppRestartRead(const App *app, AppState *s, CheckpointInfo *info)
   PetscCheck(path[0], PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "restart: there is no checkpoint in '%s'", app->scene.restart);
   PetscCall(AppCheckpointRead(path, s, info));
   PetscCall(check_options(app, info));
-  PetscCheck(info->t < app->scene.tend, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "restart: the checkpoint's time %.9g s is not before time_end = %g s", (double)info->t, (double)app->scene.tend);
+  /* that of the very end is taken: the run may have been killed before its last files were written */
+  PetscCheck(info->t <= app->scene.tend * (1 + 1e-12), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "restart: the checkpoint's time %.9g s is after time_end = %g s", (double)info->t, (double)app->scene.tend);
   printf("restart from '%s': step %" PetscInt_FMT ", t = %.9g s\n", path, info->step, (double)info->t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -338,7 +338,7 @@ PetscErrorCode AppHistorySync(AppHistory h)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The line just read is a header or a row of this table; a row goes to h->row. */
+/* The line just read is a header or a row of this table; a row of finite numbers goes to h->row. */
 static PetscBool parse_line(AppHistory h, char *line, PetscBool header)
 {
   char name[128], *at = line, *end;
@@ -350,7 +350,7 @@ static PetscBool parse_line(AppHistory h, char *line, PetscBool header)
       end = at + n;
     } else
       h->row[c] = strtod(at, &end);
-    if (end == at || *end != (c == h->ncols - 1 ? '\n' : ',')) return PETSC_FALSE;
+    if (end == at || *end != (c == h->ncols - 1 ? '\n' : ',') || (!header && PetscIsInfOrNanReal(h->row[c]))) return PETSC_FALSE;
     at = end + 1;
   }
   return PETSC_TRUE;
