@@ -225,8 +225,20 @@ PetscErrorCode AppBeamPoint(App *app, PetscInt beam, PetscReal s, PetscReal r[3]
     if ((app)->errors) snprintf((app)->errors->context, sizeof((app)->errors->context), __VA_ARGS__);                            \
   } while (0)
 
-/* appfault.c: values that are not finite. */
-enum { FAULT_X, FAULT_V, FAULT_RHO, FAULT_BEAM_X, FAULT_BEAM_V, FAULT_BODY_X, FAULT_BODY_V };
+/* appfault.c: values that are not finite; the fields in the order of fluid, beams, bodies. */
+enum {
+  FAULT_X,
+  FAULT_V,
+  FAULT_RHO,
+  FAULT_BEAM_X,
+  FAULT_BEAM_SLOPE,
+  FAULT_BEAM_V,
+  FAULT_BEAM_SLOPE_V,
+  FAULT_BODY_X,
+  FAULT_BODY_Q,
+  FAULT_BODY_V,
+  FAULT_BODY_OMEGA
+};
 PetscErrorCode AppInjectFault(App *app);
 PetscErrorCode AppTraceFault(App *app, PetscInt failed, PetscReal tmax, size_t len, char text[]);
 

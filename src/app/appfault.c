@@ -37,6 +37,8 @@ static PetscErrorCode poke_fluid(App *app, PetscReal value)
 static PetscErrorCode poke_beam(App *app, PetscReal value)
 {
   const AppScene *s = &app->scene;
+  const PetscBool slope = (PetscBool)(s->faultfield == FAULT_BEAM_SLOPE || s->faultfield == FAULT_BEAM_SLOPE_V);
+  const PetscBool rate = (PetscBool)(s->faultfield == FAULT_BEAM_V || s->faultfield == FAULT_BEAM_SLOPE_V);
   const PetscReal *e, *v;
   PetscInt n = 0;
 
@@ -45,14 +47,15 @@ static PetscErrorCode poke_beam(App *app, PetscReal value)
   PetscCheck(s->faultmarker < n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "fault_nan: node %" PetscInt_FMT " must be below %" PetscInt_FMT "", s->faultmarker, n);
   PetscCall(AncfGetState(app->ancf, NULL, &e, &v, NULL));
-  ((PetscReal *)(size_t)(s->faultfield == FAULT_BEAM_X ? e : v))[6 * s->faultmarker] = value; /* AncfSetState() would refuse it */
+  ((PetscReal *)(size_t)(rate ? v : e))[6 * s->faultmarker + (slope ? 3 : 0)] = value; /* AncfSetState() would refuse it */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The packed state begins with position, orientation and velocity of each body. */
+/* The packed state begins with position, orientation, velocity, angular momentum and angular velocity of each body. */
 static PetscErrorCode poke_body(App *app, PetscReal value)
 {
   const AppScene *s = &app->scene;
+  const int at[] = {0, 3, 7, 10};
   PetscReal *pack;
   PetscInt n;
 
@@ -62,7 +65,8 @@ static PetscErrorCode poke_body(App *app, PetscReal value)
   PetscCall(RigidGetPackSize(app->rigid, &n));
   PetscCall(PetscMalloc1(n, &pack));
   PetscCall(RigidPack(app->rigid, pack));
-  pack[RIGID_PACK_SIZE * s->faultmarker + (s->faultfield == FAULT_BODY_X ? 0 : 7)] = value;
+  pack[RIGID_PACK_SIZE * s->faultmarker + at[s->faultfield - FAULT_BODY_X]] = value;
+  if (s->faultfield == FAULT_BODY_OMEGA) pack[RIGID_PACK_SIZE * s->faultmarker + 13] = value;
   PetscCall(RigidUnpack(app->rigid, pack));
   PetscCall(PetscFree(pack));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -77,10 +81,10 @@ PetscErrorCode AppInjectFault(App *app)
 
   PetscFunctionBegin;
   if (s->faultstep < 0 || app->step != s->faultstep) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->faultfield == FAULT_BEAM_X || s->faultfield == FAULT_BEAM_V)
-    PetscCall(poke_beam(app, value));
-  else if (s->faultfield == FAULT_BODY_X || s->faultfield == FAULT_BODY_V)
+  if (s->faultfield >= FAULT_BODY_X)
     PetscCall(poke_body(app, value));
+  else if (s->faultfield >= FAULT_BEAM_X)
+    PetscCall(poke_beam(app, value));
   else
     PetscCall(poke_fluid(app, value));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,7 +14,8 @@ static const char *const ends[] = {"free", "pin", "clamp", NULL};
 static const char *const shapes[] = {"sphere", "box", "cylinder", "ellipsoid", "capsule", "mesh", NULL};
 static const char *const motions[] = {"fixed", "prescribed", "free", NULL};
 static const char *const locks[] = {"x", "y", "z", "rx", "ry", "rz", NULL};
-static const char *const faults[] = {"x", "v", "rho", "beam_x", "beam_v", "body_x", "body_v", NULL};
+static const char *const faults[] = {"x",      "v",      "rho",    "beam_x",     "beam_slope", "beam_v", "beam_slope_v",
+                                     "body_x", "body_q", "body_v", "body_omega", NULL};
 
 #define COUNT(table) ((PetscInt)(sizeof(table) / sizeof((table)[0])))
 
@@ -108,8 +109,10 @@ static PetscErrorCode read_fault(AppScene *s, const char text[])
   PetscCheck(part[0] && part[1] && part[2], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: '%s' is not field,marker,step",
              text);
   for (s->faultfield = 0; faults[s->faultfield] && strcmp(faults[s->faultfield], part[0]);) s->faultfield++;
-  PetscCheck(faults[s->faultfield], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
-             "fault_nan: field '%s' is none of x, v, rho, beam_x, beam_v, body_x, body_v", part[0]);
+  PetscCheck(
+      faults[s->faultfield], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+      "fault_nan: field '%s' is none of x, v, rho, beam_x, beam_slope, beam_v, beam_slope_v, body_x, body_q, body_v, body_omega",
+      part[0]);
   s->faultmarker = (PetscInt)strtol(part[1], &end, 10);
   PetscCheck(!*end && s->faultmarker >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "fault_nan: number '%s' must be 0 or more",
              part[1]);
@@ -141,7 +144,8 @@ static PetscErrorCode read_run(AppScene *s, SceneSet *set)
       {OPT_STRING, "restart", "Checkpoint to go on from, or a folder whose last one is taken", s->restart, NULL, NULL},
       {OPT_BOOL, "restart_changed", "Go on although options differ from those of the checkpoint", &s->restartchanged, NULL, NULL},
       {OPT_STRING, "fault_nan",
-       "For tests: put NaN in field,number,step before that step (x|v|rho of a marker, beam_x|beam_v of a node, body_x|body_v)",
+       "For tests: put NaN in field,number,step before that step (x|v|rho of a marker, beam_x|beam_slope|beam_v|beam_slope_v of "
+       "a node, body_x|body_q|body_v|body_omega)",
        fault, NULL, NULL},
       {OPT_REAL, "fault_value", "For tests: the value that fault_nan puts; 0: NaN", &s->faultvalue, NULL, NULL},
       {OPT_BOOL, "audit", "Balances of energy and angular momentum in the history: a sum over pairs for each row", &s->audit,
