@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# analyse.sh [PIECE...]: analysers and sanitizers on our own code; without arguments: warnings cppcheck valgrind tsan; also: tidy asan coverage.
+# analyse.sh [PIECE...]: analysers, sanitizers and fuzzing of our own code; without arguments: warnings cppcheck valgrind tsan fuzz; also: tidy asan coverage.
 # Builds in ANALYSE_FOLDER (default build_analyse); one line per piece says what passed. docs/testing.md explains.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -113,7 +113,7 @@ do_valgrind() {
     for log in "$folder"/valgrind.*.log; do grep -B 2 -A 30 'Invalid\|uninitialised\|ERROR SUMMARY' "$log" | head -n 60; done
     fail "valgrind"
   }
-  echo "valgrind: $(grep -h 'ERROR SUMMARY' "$folder"/valgrind.*.log | sed 's/.*SUMMARY: //' | sort | uniq -c | sed 's/^ *//')"
+  echo "valgrind: $(grep -h 'ERROR SUMMARY' "$folder"/valgrind.*.log | awk '{ errors += $4; runs++ } END { printf "%d errors in %d processes (a run and its restart)", errors, runs }')"
 }
 
 # run_all LOG SECONDS PROGRAM...: two at a time, one thread each unless OMP_NUM_THREADS says otherwise; the failed ones are named in LOG.
@@ -125,10 +125,15 @@ run_all() {
     'timeout "$LIMIT" "$0" >"$LOG.$(basename "$0").out" 2>&1 || { echo "$(basename "$0"): exit code $?"; tail -n 40 "$LOG.$(basename "$0").out"; }' >"$log" 2>&1
 }
 
+# One build for asan and fuzz: libFuzzer's targets and the tests.
+configure_asan() {
+  configure asan -DCMAKE_C_COMPILER=clang -DCMAKE_C_FLAGS="-O1" -DFROND_FUZZ=ON -DBUILD_TESTING=ON
+}
+
 # AddressSanitizer and UndefinedBehaviorSanitizer: the C unit tests, a coupled run and its restart. Leaks are not looked for: Open MPI has many.
 do_asan() {
   local tests n
-  configure asan -DCMAKE_C_COMPILER=clang -DCMAKE_C_FLAGS="-O1" -DFROND_SANITIZE=address,undefined -DBUILD_TESTING=ON
+  configure_asan
   tests=$(unit_tests asan)
   n=$(echo "$tests" | wc -l)
   build asan frond_app $tests
@@ -138,6 +143,13 @@ do_asan() {
   short_run "$folder/asan/bin/frond" >"$folder/asan.run" 2>&1 || { tail -n 60 "$folder/asan.run"; fail "asan: frond run"; }
   unset ASAN_OPTIONS UBSAN_OPTIONS OMP_NUM_THREADS
   echo "asan: no report of AddressSanitizer and UndefinedBehaviorSanitizer in $n unit tests, a run and its restart"
+}
+
+# Some seconds of each fuzz target from the committed corpus.
+do_fuzz() {
+  configure_asan
+  sh tests/fuzz/run.sh "$folder/fuzz" "${FUZZ_SECONDS:-4}" "$folder/asan" >"$folder/fuzz.out" || { cat "$folder/fuzz.out"; fail "fuzz"; }
+  echo "fuzz: $(awk '{ printf "%s%s", (NR > 1 ? "; " : ""), $0 }' "$folder/fuzz.out")"
 }
 
 # ThreadSanitizer with Archer, which tells it of OpenMP's barriers: a coupled run with two threads.
@@ -168,14 +180,16 @@ do_coverage() {
   run_all "$folder/coverage.tests" 300 $(printf "$folder/coverage/tests/%s " $tests) "$folder"/coverage/app_*.sh
   short_run "$folder/coverage/bin/frond" >"$folder/coverage.run" 2>&1 || true
   unset OMP_NUM_THREADS
-  gcovr -r . --filter src/ "$folder/coverage" -j "$jobs" --exclude-unreachable-branches --print-summary --fail-under-line 90 --txt "$folder/coverage.txt" >"$folder/coverage.sum" || {
-    cat "$folder/coverage.txt" "$folder/coverage.sum"
-    fail "coverage of lines below 90 %"
+  gcovr -r . --filter src/ "$folder/coverage" -j "$jobs" --exclude-unreachable-branches --json "$folder/coverage.json" 2>"$folder/coverage.gcovr" >&2 || {
+    tail -n 20 "$folder/coverage.gcovr"
+    fail "gcovr"
   }
-  echo "coverage: $(grep -E '^(lines|branches)' "$folder/coverage.sum" | tr '\n' ' ')"
+  python3 tests/analyse/coverage.py "$folder/coverage.json" "$folder/coverage.txt" 90 >"$folder/coverage.sum" || fail "coverage of lines below 90 %: $(cat "$folder/coverage.sum")"
+  echo "coverage: $(cat "$folder/coverage.sum")"
+  echo "(what is not reached: $folder/coverage.txt)"
 }
 
-[ $# -gt 0 ] || set -- warnings cppcheck valgrind tsan
+[ $# -gt 0 ] || set -- warnings cppcheck valgrind tsan fuzz
 for piece in "$@"; do
   seconds=$SECONDS
   "do_$piece"

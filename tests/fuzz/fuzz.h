@@ -128,6 +128,14 @@ static inline void fuzz_write(const uint8_t *data, size_t size)
 }
 #endif
 
+#ifdef FUZZ_HDF5
+/* HDF5 wants a file with a path of its own. */
+static void fuzz_unlink_file(void)
+{
+  unlink(fuzz_file);
+}
+#endif
+
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -141,9 +149,15 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
   if (PetscMallocSet(fuzz_malloc, fuzz_free, fuzz_realloc)) abort();
   if (PetscInitialize(&n, &list, NULL, NULL)) abort();
   if (PetscPushErrorHandler(PetscReturnErrorHandler, NULL)) abort();
+#ifdef FUZZ_HDF5
+  strcpy(fuzz_file, access("/dev/shm", W_OK) ? "/tmp/fuzzXXXXXX" : "/dev/shm/fuzzXXXXXX");
+  fuzz_fd = mkstemp(fuzz_file);
+  if (fuzz_fd < 0 || atexit(fuzz_unlink_file)) abort();
+#else
   fuzz_fd = memfd_create("input", 0);
   if (fuzz_fd < 0) abort();
   snprintf(fuzz_file, sizeof(fuzz_file), "/proc/self/fd/%d", fuzz_fd);
+#endif
   return 0;
 }
 
