@@ -61,3 +61,5 @@ frond_app_test(app_suspension validation)
 add_test(NAME app_suspension_fine COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${FROND_TEST_PYTHON}
   ${CMAKE_CURRENT_SOURCE_DIR}/app_suspension.py $<TARGET_FILE:frond_app> ${CMAKE_CURRENT_BINARY_DIR}/app_suspension_fine ${PROJECT_SOURCE_DIR} 0.25 --dp 0.0005)
 set_tests_properties(app_suspension_fine PROPERTIES LABELS validation-long TIMEOUT 7200 ENVIRONMENT "OMP_NUM_THREADS=2;OMP_WAIT_POLICY=PASSIVE")
+frond_app_test(app_settling validation-long)
+set_tests_properties(app_settling PROPERTIES TIMEOUT 3600)
