@@ -11,6 +11,7 @@ function(frond_app_test name label)
 endfunction()
 
 frond_app_test(app_badinput unit)
+frond_app_test(app_badbodies unit)
 frond_app_test(app_mesh unit)
 frond_app_test(app_regions unit)
 frond_app_test(app_run unit)

@@ -286,6 +286,7 @@ PetscErrorCode AppBuildJoints(App *app);
 PetscErrorCode AppBuildShortRange(App *app);
 PetscErrorCode AppBuildShortBeams(App *app);
 PetscErrorCode AppCheckOverlap(App *app);
+void AppNameError(App *app);
 PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v[3]);
 
 /* scenemesh.c: beams from a Gmsh mesh, the last file being kept; a group of lines makes start, end, elements, curvature, curve.

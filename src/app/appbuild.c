@@ -69,9 +69,11 @@ static PetscErrorCode build_beams(App *app, PetscReal rho)
 static PetscErrorCode build_bodies(App *app, PetscReal rho)
 {
   AppScene *s = &app->scene;
+  PetscReal dp = 0;
 
   PetscFunctionBegin;
   if (!s->nbodies && !s->nlumped) PetscFunctionReturn(PETSC_SUCCESS);
+  if (app->sph) PetscCall(SphGetSpacing(app->sph, &dp));
   PetscCall(RigidCreate(PETSC_COMM_SELF, &app->rigid));
   PetscCall(RigidSetDimension(app->rigid, app->dim));
   PetscCall(RigidSetGravity(app->rigid, s->gravity));
@@ -90,6 +92,7 @@ static PetscErrorCode build_bodies(App *app, PetscReal rho)
     PetscCall(RigidSetBodyLoad(app->rigid, b, s->bodies[b].load, s->bodies[b].torque));
     PetscCall(RigidGeometryDestroy(&mesh)); /* the body keeps its own reference */
     PetscCall(RigidGetBody(app->rigid, b, spec));
+    if (app->sph) PetscCall(RigidFillCheck(spec, app->dim, dp));
     AppDoing(app, "%s", "");
   }
   PetscCall(AppBuildLumped(app));

@@ -80,8 +80,21 @@ static PetscErrorCode check_ranks(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode use_scene(App *app, const Command *c, AppKnown *known, int *exitcode)
+{
+  PetscFunctionBegin;
+  PetscCall(AppBuild(app));
+  PetscCall(AppOptionsCheckUnused(known));
+  if (c->check)
+    PetscCall(AppCheck(app));
+  else
+    PetscCall(AppRun(app, exitcode));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode run_scene(const Command *c, AppErrors *errors, AppKnown *known, int *exitcode)
 {
+  PetscErrorCode ierr;
   App app;
 
   PetscFunctionBegin;
@@ -90,12 +103,9 @@ static PetscErrorCode run_scene(const Command *c, AppErrors *errors, AppKnown *k
   PetscCall(AppOptionsInsertFile(c->file));
   PetscCall(AppKnownCollect(known));
   PetscCall(AppSceneRead(&app.scene, c->file));
-  PetscCall(AppBuild(&app));
-  PetscCall(AppOptionsCheckUnused(known));
-  if (c->check)
-    PetscCall(AppCheck(&app));
-  else
-    PetscCall(AppRun(&app, exitcode));
+  ierr = use_scene(&app, c, known, exitcode);
+  if (ierr) AppNameError(&app);
+  PetscCall(ierr);
   PetscCall(AppDestroy(&app));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

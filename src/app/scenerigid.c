@@ -315,13 +315,11 @@ PetscErrorCode AppLumpedTip(App *app, PetscInt beam, PetscReal r[3], PetscReal v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuse bodies that overlap at the start, by their names; bodies that are no spheres need the fluid's spacing for it. */
+/* Refuse bodies that overlap at the start; bodies that are no spheres need the fluid's spacing for it. */
 PetscErrorCode AppCheckOverlap(App *app)
 {
   const AppScene *s = &app->scene;
   PetscReal dp = 0;
-  PetscErrorCode ierr;
-  int i, j;
 
   PetscFunctionBegin;
   if (app->sph) PetscCall(SphGetSpacing(app->sph, &dp));
@@ -331,12 +329,39 @@ PetscErrorCode AppCheckOverlap(App *app)
       if (size[a] > 0 && (dp == 0 || size[a] / 8 < dp)) dp = size[a] / 8;
   }
   if (dp == 0) PetscFunctionReturn(PETSC_SUCCESS); /* meshes only, without fluid */
-  ierr = RigidCheckOverlap(app->rigid, dp);
-  if (ierr && app->errors && sscanf(app->errors->message, "Rigid bodies %d (%*[a-z]) and %d", &i, &j) == 2 && i >= 0 && j >= 0 &&
-      i < s->nbodies && j < s->nbodies)
+  PetscCall(RigidCheckOverlap(app->rigid, dp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The name of the surface with this group of markers; "fluid" for none of them. */
+static const char *surface_name(const App *app, int group)
+{
+  for (PetscInt i = 0; i < app->nsurfaces; i++) {
+    PetscInt g;
+    if (!CoupleGetSurface(app->couple, i, NULL, &g) && g == group) return app->surfaces[i].name;
+  }
+  return "fluid";
+}
+
+/* Puts the scene's names before an error of the library that knows bodies, joints and surfaces by their numbers. */
+void AppNameError(App *app)
+{
+  const AppScene *s = &app->scene;
+  const char *text = app->errors ? app->errors->message : "";
+  int i, j;
+
+  if (!app->errors || app->errors->context[0]) return;
+  if (sscanf(text, "Rigid bodies %d (%*[a-z]) and %d", &i, &j) == 2 && i >= 0 && j >= 0 && i < s->nbodies && j < s->nbodies)
     AppDoing(app, "bodies '%.40s' and '%.40s'", s->bodies[i].name, s->bodies[j].name);
-  else if (ierr && app->errors && sscanf(app->errors->message, "Rigid body %d (%*[a-z]) overlaps", &i) == 1 && i >= 0 &&
-           i < s->nbodies)
+  else if (sscanf(text, "Rigid body %d", &i) == 1 && i >= 0 && i < s->nbodies)
     AppDoing(app, "body '%.40s'", s->bodies[i].name);
-  PetscFunctionReturn(ierr);
+  else if (sscanf(text, "markers %*d and %*d (groups %d and %d)", &i, &j) == 2)
+    AppDoing(app, "'%.40s' and '%.40s'", surface_name(app, i), surface_name(app, j));
+  else if (sscanf(text, "beam %d and body %d overlap", &i, &j) == 2 && i >= 0 && j >= 0 && i < s->nbeams && j < s->nbodies)
+    AppDoing(app, "beam '%.40s' and body '%.40s'", s->beams[i].name, s->bodies[j].name);
+  else if (sscanf(text, "beam %d and beam %d overlap", &i, &j) == 2 && i >= 0 && j >= 0 && i < s->nbeams && j < s->nbeams)
+    AppDoing(app, "beams '%.40s' and '%.40s'", s->beams[i].name, s->beams[j].name);
+  else if (sscanf(text, "Rigid joint %d (", &i) == 1)
+    for (PetscInt k = 0; k < s->njoints; k++)
+      if (s->joints[k].joint == i) AppDoing(app, "joint '%.40s'", s->joints[k].name);
 }

@@ -387,4 +387,10 @@ FROND_EXTERN PetscReal RigidShapeDistance(const RigidBodySpec *spec, const Petsc
 FROND_EXTERN PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscReal dp, PetscReal depthmax,
                                              PetscInt *n, PetscReal **x, PetscReal **volume, PetscReal **depth);
 
+/*
+  Refuse a body whose smallest extent is below the spacing, as RigidFillMarkers() does, without laying out any marker. spec: the
+  body. dim: 2 or 3. dp: spacing, m, > 0.
+*/
+FROND_EXTERN PetscErrorCode RigidFillCheck(const RigidBodySpec *spec, PetscInt dim, PetscReal dp);
+
 #endif

@@ -314,7 +314,7 @@ static PetscErrorCode FillEllipsoid(RigidMarkers *m, PetscInt dim, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillCheck(const RigidBodySpec *spec, PetscInt dim, PetscReal dp, PetscReal depthmax)
+PetscErrorCode RigidFillCheck(const RigidBodySpec *spec, PetscInt dim, PetscReal dp)
 {
   const PetscReal least = RigidShapeSmallest(spec, dim);
 
@@ -323,14 +323,9 @@ static PetscErrorCode FillCheck(const RigidBodySpec *spec, PetscInt dim, PetscRe
              "RigidFillMarkers(): dim = %" PetscInt_FMT "; must be 2 or 3", dim);
   PetscCheck(dp > 0. && !PetscIsInfOrNanReal(dp), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "RigidFillMarkers(): dp = %g m; must be > 0", (double)dp);
-  PetscCheck(depthmax >= .5 * dp, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "RigidFillMarkers(): depthmax = %g m; must be >= dp/2 = %g m", (double)depthmax, .5 * (double)dp);
   PetscCheck(least * SLACK >= dp, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "A %s whose smallest extent is %g m cannot be marked at spacing dp = %g m; dp must be <= %g m",
              RigidShapeName(spec->shape), (double)least, (double)dp, (double)least);
-  PetscCheck(RigidShapeVolume(spec, dim) / PetscPowReal(dp, (PetscReal)dim) < 2.e9, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "A %s of volume %g would need more than 2e9 markers at spacing dp = %g m", RigidShapeName(spec->shape),
-             (double)RigidShapeVolume(spec, dim), (double)dp);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -342,7 +337,12 @@ PetscErrorCode RigidFillMarkers(const RigidBodySpec *spec, PetscInt dim, PetscRe
   const PetscReal *a = flat.size;
 
   PetscFunctionBegin;
-  PetscCall(FillCheck(spec, dim, dp, depthmax));
+  PetscCall(RigidFillCheck(spec, dim, dp));
+  PetscCheck(depthmax >= .5 * dp, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "RigidFillMarkers(): depthmax = %g m; must be >= dp/2 = %g m", (double)depthmax, .5 * (double)dp);
+  PetscCheck(RigidShapeVolume(spec, dim) / PetscPowReal(dp, (PetscReal)dim) < 2.e9, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "A %s of volume %g would need more than 2e9 markers at spacing dp = %g m", RigidShapeName(spec->shape),
+             (double)RigidShapeVolume(spec, dim), (double)dp);
   PetscCall(RigidCheckCount(spec, dim, dp, depthmax));
   PetscCall(RigidRegisterEvents());
   PetscCall(PetscLogEventBegin(RIGID_Fill, 0, 0, 0, 0));

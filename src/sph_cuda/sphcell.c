@@ -289,10 +289,10 @@ PetscErrorCode SphCheckOverlap(Sph sph, const SphGrid *g, const int *cellstart)
   if (pair[0] < PETSC_MAX_INT) {
     const int i = sph->slot[pair[0]];
     SETERRQ(sph->comm, PETSC_ERR_ARG_WRONG,
-            "markers %" PetscInt_FMT " and %" PetscInt_FMT
+            "markers %" PetscInt_FMT " and %" PetscInt_FMT " (groups %d and %d)"
             " lie on top of one another at (%g, %g, %g): their distance %.3g m must be at least 0.1 sph_dp = %.3g m",
-            pair[0], pair[1], sph->st.x[0][i], sph->st.x[1][i], sph->st.x[2][i], sqrt(Distance2(sph, g, i, sph->slot[pair[1]])),
-            tol);
+            pair[0], pair[1], sph->group[i], sph->group[sph->slot[pair[1]]], sph->st.x[0][i], sph->st.x[1][i], sph->st.x[2][i],
+            sqrt(Distance2(sph, g, i, sph->slot[pair[1]])), tol);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
