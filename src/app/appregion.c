@@ -14,7 +14,7 @@ static PetscReal box_distance(const App *app, const SceneRegion *r, const PetscR
   const AppScene *s = &app->scene;
   PetscReal outside = 0, inside = -PETSC_MAX_REAL;
 
-  for (PetscInt a = 0; a < app->dim; a++) {
+  for (PetscInt a = 0; a < 3 && a < app->dim; a++) {
     const PetscReal q = PetscMax(r->lo[a] - x[a], x[a] - r->hi[a]);
 
     if (s->periodic[a] && r->hi[a] - r->lo[a] > (1 - TINY) * (s->hi[a] - s->lo[a])) continue;
@@ -38,8 +38,8 @@ static PetscReal axis_distance(const App *app, const SceneRegion *g, const Petsc
   PetscReal s = 0, r2 = 0, r, best = PETSC_MAX_REAL;
   PetscBool inside;
 
-  for (PetscInt a = 0; a < app->dim; a++) s += (x[a] - g->start[a]) * g->axis[a];
-  for (PetscInt a = 0; a < app->dim; a++) r2 += PetscSqr(x[a] - g->start[a] - s * g->axis[a]);
+  for (PetscInt a = 0; a < 3 && a < app->dim; a++) s += (x[a] - g->start[a]) * g->axis[a];
+  for (PetscInt a = 0; a < 3 && a < app->dim; a++) r2 += PetscSqr(x[a] - g->start[a] - s * g->axis[a]);
   r = PetscSqrtReal(r2);
   if (g->endless) s -= g->length * PetscFloorReal(s / g->length);
   for (PetscInt k = 0; k < g->nsegments; k++) {
@@ -60,7 +60,7 @@ static PetscReal shape_distance(const App *app, const SceneRegion *r, const Pets
   case REGION_BOX:
     return box_distance(app, r, x);
   case REGION_SPHERE:
-    for (PetscInt a = 0; a < app->dim; a++) d2 += PetscSqr(x[a] - r->position[a]);
+    for (PetscInt a = 0; a < 3 && a < app->dim; a++) d2 += PetscSqr(x[a] - r->position[a]);
     return PetscSqrtReal(d2) - r->radius;
   case REGION_SURFACE:
     for (int a = 0; a < 3; a++) y[a] = x[a] - r->position[a];
@@ -75,7 +75,7 @@ static PetscReal bound(const App *app, const SceneRegion *r, const PetscReal x[3
 {
   PetscReal d2 = 0;
 
-  for (PetscInt a = 0; a < app->dim; a++) d2 += PetscSqr(PetscMax(0, PetscMax(r->lo[a] - x[a], x[a] - r->hi[a])));
+  for (PetscInt a = 0; a < 3 && a < app->dim; a++) d2 += PetscSqr(PetscMax(0, PetscMax(r->lo[a] - x[a], x[a] - r->hi[a])));
   return PetscSqrtReal(d2);
 }
 
@@ -121,7 +121,7 @@ PetscReal AppRegionGap(const PetscReal x[3], void *ctx)
   PetscReal y[3] = {x[0], x[1], x[2]}, region, wall;
   PetscInt nearest;
 
-  for (PetscInt a = 0; a < app->dim; a++)
+  for (PetscInt a = 0; a < 3 && a < app->dim; a++)
     if (s->periodic[a]) y[a] -= (s->hi[a] - s->lo[a]) * PetscFloorReal((y[a] - s->lo[a]) / (s->hi[a] - s->lo[a]));
   AppRegionDistance(app, y, &region, &wall, &nearest);
   return -wall;

@@ -348,6 +348,7 @@ static PetscErrorCode Account(CoupleAttach l, PetscReal dt)
 
     for (PetscInt i = 0; i < l->n && !w0; i++)
       if (l->a[i].unknown == k) w0 = l->a[i].w0;
+    PetscCheck(w0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no beam is attached to free body %" PetscInt_FMT "", l->free[k]);
     PetscCall(RigidGetState(l->rigid, l->free[k], X, NULL, NULL, w1));
     for (int c = 0; c < 3; c++) {
       T[c] = F[3 + c] * l->length[k];

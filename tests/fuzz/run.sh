@@ -26,11 +26,11 @@ cmake --build "$build" --target frond_fuzz -j "$(nproc)" >"$folder/build.log" 2>
 }
 export ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1 OMP_NUM_THREADS=1
 all=0
-# PETSc loses what libyaml holds of a file that is no YAML (150 kB each): scenes are read by a new process every 10000 inputs.
+# PETSc loses what libyaml holds of a file that is no YAML (150 kB each): scenes are read by a new process every 3000 inputs.
 for target in scene mesh table checkpoint payload history; do
   mkdir -p "$folder/found/$target"
   until=$(($(date +%s) + seconds)) n=0 runs=-1
-  if [ $target = scene ]; then runs=10000; fi
+  if [ $target = scene ]; then runs=3000; fi
   while left=$((until - $(date +%s))) && [ $left -gt 0 ]; do
     "$build/tests/fuzz/fuzz_$target" -max_total_time=$left -runs=$runs -timeout=20 -rss_limit_mb=3000 -max_len=4096 -close_fd_mask=1 \
       -print_final_stats=1 -dict="$here/$target.dict" -artifact_prefix="$folder/bad_$target-" "$folder/found/$target" "$here/corpus/$target" \
