@@ -194,7 +194,8 @@ def variants():
 
 def others():
     """Integrators with a memory that PETSc keeps begin anew at a checkpoint: the same bits with the same checkpoints."""
-    for kind, args in (("rk", ["-ancf_ts_type", "rk"]), ("bdf", ["-ancf_ts_type", "bdf"]), ("adaptive", ["-ancf_ts_adapt_type", "basic"])):
+    types = [(kind, ["-ancf_ts_type", kind]) for kind in ("rk", "bdf", "theta", "alpha", "rosw", "arkimex", "ssp", "glee")]
+    for kind, args in (*types, ("adaptive", ["-ancf_ts_adapt_type", "basic"]), ("multipliers", ["-ancf_constraints", "multipliers"])):
         common = [*args, "-sph_dt", "1e-4", "-time_end", "4e-3", "-output_every", "1e-3", "-checkpoint_every", "2e-3", "-ancf_substeps", "4"]
         frond.runs("run", "all.yaml", *common, "-output_dir", kind)
         shutil.copytree(frond.path(kind), frond.path(kind + "_again"))

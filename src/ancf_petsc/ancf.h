@@ -237,7 +237,7 @@ FROND_EXTERN PetscErrorCode AncfRestoreState(Ancf ancf);
 /*
   All that the beams carry from step to step. A run that goes on from an unpacked state has the bits of the one that was
   packed; that one is not changed by AncfPack() with the types alpha2, beuler, cn, euler and basicsymplectic and steps of given
-  size, while the others begin anew (multistep methods at first order). n: reals.
+  size and no multipliers, while the others begin anew (multistep methods at first order). n: reals.
 */
 FROND_EXTERN PetscErrorCode AncfGetPackSize(Ancf ancf, PetscInt *n);
 /* Pack, see AncfGetPackSize(), whose number of reals this takes; not between AncfGetLoadsEnd() and the end of the step. state:

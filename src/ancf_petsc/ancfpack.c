@@ -3,8 +3,8 @@
 
   TSALPHA2 with steps of given size, backward Euler, Crank-Nicolson, Euler and the symplectic methods remember e, v and at most
   an acceleration, which is here (ancfalpha.c): packing changes nothing, and a run that is continued from a packed state has the
-  bits of one that was not interrupted. Other types have memory that TS does not give away: they begin anew at what is packed,
-  when it is packed and when it is unpacked, so that these two go on alike.
+  bits of one that was not interrupted. Other types, and constraints with multipliers, have memory that TS does not give away:
+  they begin anew at what is packed, when it is packed and when it is unpacked, so that these two go on alike.
 */
 #include "ancfimpl.h"
 
@@ -23,7 +23,7 @@ PetscErrorCode AncfGetPackSize(Ancf ancf, PetscInt *n)
 {
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetPackSize: call AncfSetUp() first");
-  *n = PACK_HEAD + (5 * 6 + 18 + 1) * ancf->nnodes;
+  *n = PACK_HEAD + (5 * 6 + 18 + 1) * ancf->nnodes + ancf->nmult;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,6 +32,24 @@ PetscErrorCode AncfGetPackExact(Ancf ancf, PetscBool *exact)
   PetscFunctionBegin;
   PetscCheck(ancf->setup, ancf->comm, PETSC_ERR_ARG_WRONGSTATE, "AncfGetPackExact: call AncfSetUp() first");
   *exact = ancf->exact;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The multipliers, from which the next step's Newton iterations start, behind all else. */
+static PetscErrorCode MoveMultipliers(Ancf ancf, PetscReal state[], PetscBool load)
+{
+  PetscReal *in = state + PACK_HEAD + (5 * 6 + 18 + 1) * ancf->nnodes;
+  const PetscInt at = (ancf->form == ANCF_FORM_SECOND ? 6 : 12) * ancf->nnodes;
+  PetscScalar *y;
+
+  PetscFunctionBegin;
+  if (!ancf->nmult) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(ancf->U, &y));
+  if (load)
+    PetscCall(PetscArraycpy(y + at, in, ancf->nmult));
+  else
+    PetscCall(PetscArraycpy(in, y + at, ancf->nmult));
+  PetscCall(VecRestoreArray(ancf->U, &y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,6 +75,7 @@ PetscErrorCode AncfPack(Ancf ancf, PetscReal state[])
       PetscCall(PetscArrayzero(s, width[k] * ancf->nnodes));
   }
   for (PetscInt j = 0; j < ancf->nnodes; j++) s[j] = ancf->fixed[j];
+  PetscCall(MoveMultipliers(ancf, state, PETSC_FALSE));
   if (!ancf->exact) PetscCall(AncfUnpack(ancf, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -85,6 +104,7 @@ PetscErrorCode AncfUnpack(Ancf ancf, const PetscReal state[])
   ancf->linear = ancf->avalid = PETSC_FALSE;
   ancf->loadnow = 0;
   PetscCall(AncfTSPush(ancf));
+  PetscCall(MoveMultipliers(ancf, (PetscReal *)(size_t)state, PETSC_TRUE));
   ancf->step = state[2];
   if (ancf->history && state[1] != 0) {
     PetscCall(PetscArraycpy(ancf->history, state + PACK_HEAD + 24 * ancf->nnodes, 6 * ancf->nnodes));

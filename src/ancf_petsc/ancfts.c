@@ -419,6 +419,8 @@ PetscErrorCode AncfTSTouch(Ancf ancf)
 /* State -> TS, whose history is discarded. */
 PetscErrorCode AncfTSPush(Ancf ancf)
 {
+  PetscBool glee;
+
   PetscFunctionBegin;
   if (ancf->ngroups) {
     PetscCall(AncfGroupPush(ancf));
@@ -426,6 +428,11 @@ PetscErrorCode AncfTSPush(Ancf ancf)
   }
   PetscCall(TSSetTime(ancf->ts, ancf->t));
   PetscCall(TSRestartStep(ancf->ts));
+  PetscCall(PetscObjectTypeCompare((PetscObject)ancf->ts, TSGLEE, &glee));
+  if (glee) { /* carries several solutions, which it makes of ours when it is set up */
+    PetscCall(TSReset(ancf->ts));
+    PetscCall(TSSetSolution(ancf->ts, ancf->U));
+  }
   ancf->restart = PETSC_TRUE;
   ancf->given = PETSC_FALSE;
   if (ancf->njoints) PetscCall(AncfJointSync(ancf, PETSC_TRUE, NULL));
