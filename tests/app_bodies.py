@@ -155,6 +155,52 @@ def floating():
     check(max(abs(v) for v in h["box_vy"]) < most, "a neutral disk moves at %g m/s" % h["box_vy"][-1])
 
 
+POOL = """
+gravity: [0, 0, -9.81]
+domain_lo: [0, 0, 0]
+domain_hi: [0.2, 0.2, 0.25]
+domain_periodic: [x, y]
+fluid_hi: [0.2, 0.2, 0.125]
+walls: zmin
+body: {shape: sphere, motion: free, size: [0.05, 0, 0], density: 300}
+bodies: ball
+body_ball:
+  position: [0.1, 0.1, 0.1275]
+sph:
+  dp: 0.0125
+  viscosity: 5
+  kernel: wendland
+  max_speed: 1.2
+time_end: 0.8
+output_every: 0.8
+"""
+
+
+def cap(R, d):
+    """Volume of a sphere of radius R to the depth d."""
+    return math.pi * d**2 * (R - d / 3)
+
+
+def floating_sphere():
+    # Archimedes: the cap below the level has 0.3 of the volume. The level from the volume of fluid at the start: the sphere's bottom lies 0.0475 m below
+    # it then, 0.0112 m more than in the end. Bound as for the box, dp/2: a free surface is known to that. Drag 6 pi mu R/2 damps the swing at 5/s.
+    R, area, start = 0.05, 0.2**2, 0.125 - (0.1275 - 0.05)
+    dp = 0.00625 if fine else 0.0125
+    frond.write("pool.yaml", POOL)
+    frond.runs("run", "pool.yaml", "-sph_dp", str(dp), "-output_dir", "ball", timeout=3000)
+    h = history("ball")
+    draft = 0.0
+    for bit in range(40):
+        more = draft + R / 2**bit
+        draft = more if cap(R, more) < 0.3 * cap(R, 2 * R) else draft
+    level = (area * 0.125 - cap(R, start) + cap(R, draft)) / area
+    print("a floating sphere: draft %.5f m, centre at %.5f m, Archimedes %.5f m, off by %+.2f dp, speed %.1e m/s; it started %.2f dp off" %
+          (draft, h["ball_z"][-1], level + R - draft, (h["ball_z"][-1] - level - R + draft) / dp, h["ball_vz"][-1], (0.1275 - level - R + draft) / dp))
+    near(h["ball_z"][-1], level + R - draft, dp / 2, "draft of a floating sphere")
+    check(abs(0.1275 - level - R + draft) > 0.6 * dp, "a floating sphere: the start is the end")
+    check(abs(h["ball_vz"][-1]) * 0.2 < dp / 10, "a floating sphere still moves at %g m/s" % h["ball_vz"][-1])
+
+
 def refusals():
     for args, words in ((["-body_box_load", "1,nan,0"], ["load"]), (["-body_box_gravity", "1,2"], ["body_box_gravity"]),
                         (["-body_box_torque", "a,0,0"], ["body_box_torque"])):
@@ -164,5 +210,6 @@ def refusals():
 sides()
 array()
 floating()
+floating_sphere()
 refusals()
 report()

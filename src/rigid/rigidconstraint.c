@@ -10,43 +10,16 @@
   Second order and symmetric (without dampers and yield). Springs and dampers act by their mean over the step (average
   acceleration rule), hence stiff ones do not limit h. Constraints are met to round-off at every step: nothing drifts.
 
-  Step 1 is solved by Newton iterations with the matrix  D W + 2/(h^2 s), s = k/2 + c/h on soft rows, at q_n: symmetric
-  positive definite, sparse as the graph of the joints, factored once a step by PETSc (options prefix -rigid_joint_). A
-  relative shift of 1e-11 of the diagonal lets redundant rows pass; iterations remove its effect.
+  Step 1 is solved by PETSc's SNES (options prefix -rigid_joint_): Newton with the matrix  D W + 2/(h^2 s), s = k/2 + c/h on
+  soft rows, at q_n: symmetric positive definite, sparse as the graph of the joints, factored once a step. The test of
+  convergence is ours, as rows are met to the round-off of different lengths. A relative shift of 1e-11 of the diagonal lets
+  redundant rows pass; iterations remove its effect.
 
   Yield: a soft row whose |lambda| exceeds the yield moment is held at it and its rest angle moves by the plastic part.
 */
-#include "rigidimpl.h"
-#include <petscksp.h>
+#include "rigidsystem.h"
 
-#define MAX_ITERATIONS 60
-#define TOLERANCE 1.e-13 /* of the lengths that a row is the difference of; 1 for angles */
-#define ASSEMBLED 1.e-6  /* the same for the placement at the start of a step */
-
-struct _p_RigidSystem {
-  PetscInt n;              /* rows */
-  PetscInt *joint, *local; /* of each row */
-  RigidRow *row0, *row1;   /* at q_n, q_{n+1} */
-  PetscReal *W;            /* n x 2 x 6: M^-1 J^T of each end */
-  PetscReal *lambda, *res; /* n */
-  PetscReal *length;       /* n */
-  PetscReal *drive;        /* n: velocity that the bodies that are not free give the row */
-  PetscBool *active;       /* n */
-  PetscInt *start, *entry; /* rows of body i: entry[start[i] .. start[i + 1]), 2 row + end */
-  PetscReal *wrench;       /* bodies x 6 */
-  RigidBody *saved;        /* bodies */
-  PetscScalar *value;      /* matrix values of one row */
-  PetscInt *column;
-  Mat A;
-  KSP ksp;
-  Vec x, b;
-};
-
-static PetscInt RowEnd(Rigid rigid, PetscInt row, int end)
-{
-  const RigidJointSpec *s = &rigid->joint[rigid->system->joint[row]].spec;
-  return end ? s->b : s->a;
-}
+#define ASSEMBLED 1.e-6 /* placement at the start of a step: of the lengths that a row is the difference of; 1 for angles */
 
 PetscErrorCode RigidSystemHasBody(Rigid rigid, PetscInt i, PetscBool *has)
 {
@@ -66,13 +39,13 @@ static PetscErrorCode SystemLists(Rigid rigid)
   PetscCall(PetscMalloc1(2 * (size_t)s->n, &s->entry));
   for (PetscInt r = 0; r < s->n; r++)
     for (int e = 0; e < 2; e++)
-      if (RowEnd(rigid, r, e) != RIGID_GROUND) s->start[RowEnd(rigid, r, e) + 1]++;
+      if (RigidRowEnd(rigid, r, e) != RIGID_GROUND) s->start[RigidRowEnd(rigid, r, e) + 1]++;
   for (PetscInt i = 0; i < rigid->n; i++) s->start[i + 1] += s->start[i];
   PetscCall(PetscMalloc1((size_t)rigid->n, &fill));
   PetscCall(PetscArraycpy(fill, s->start, rigid->n));
   for (PetscInt r = 0; r < s->n; r++)
     for (int e = 0; e < 2; e++)
-      if (RowEnd(rigid, r, e) != RIGID_GROUND) s->entry[fill[RowEnd(rigid, r, e)]++] = 2 * r + e;
+      if (RigidRowEnd(rigid, r, e) != RIGID_GROUND) s->entry[fill[RigidRowEnd(rigid, r, e)]++] = 2 * r + e;
   PetscCall(PetscFree(fill));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -81,14 +54,13 @@ static PetscErrorCode SystemMatrix(Rigid rigid)
 {
   RigidSystem s = rigid->system;
   PetscInt *nnz, most = 1;
-  PC pc;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1((size_t)s->n, &nnz));
   for (PetscInt r = 0; r < s->n; r++) {
     nnz[r] = 1;
     for (int e = 0; e < 2; e++) {
-      const PetscInt i = RowEnd(rigid, r, e);
+      const PetscInt i = RigidRowEnd(rigid, r, e);
       if (i != RIGID_GROUND) nnz[r] += s->start[i + 1] - s->start[i];
     }
     most = PetscMax(most, nnz[r]);
@@ -100,13 +72,7 @@ static PetscErrorCode SystemMatrix(Rigid rigid)
   PetscCall(PetscFree(nnz));
   PetscCall(MatSetOption(s->A, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(s->A, &s->x, &s->b));
-  PetscCall(KSPCreate(PETSC_COMM_SELF, &s->ksp));
-  PetscCall(KSPSetOptionsPrefix(s->ksp, rigid->prefix));
-  PetscCall(KSPAppendOptionsPrefix(s->ksp, "rigid_joint_"));
-  PetscCall(KSPSetType(s->ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(s->ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(RigidPositionCreate(rigid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,12 +119,12 @@ PetscErrorCode RigidSystemDestroy(Rigid rigid)
   PetscCall(MatDestroy(&s->A));
   PetscCall(VecDestroy(&s->x));
   PetscCall(VecDestroy(&s->b));
-  PetscCall(KSPDestroy(&s->ksp));
+  PetscCall(SNESDestroy(&s->snes));
   PetscCall(PetscFree(rigid->system));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void SystemRows(Rigid rigid, RigidRow *row)
+void RigidSystemRows(Rigid rigid, RigidRow *row)
 {
   for (PetscInt j = 0; j < rigid->njoints; j++) RigidJointRows(rigid, &rigid->joint[j], row + rigid->joint[j].first);
 }
@@ -174,14 +140,14 @@ static void SystemLengths(Rigid rigid)
     if (!point) continue;
     s->length[r] = Vec3Norm(j->ra) + Vec3Norm(j->rb);
     for (int e = 0; e < 2; e++) {
-      const PetscInt i = RowEnd(rigid, r, e);
+      const PetscInt i = RigidRowEnd(rigid, r, e);
       if (i != RIGID_GROUND) s->length[r] += Vec3Norm(rigid->body[i].X);
     }
   }
 }
 
 /* D W of the active rows plus the compliance of soft ones (stage 1: h > 0) at the present placement; unit rows for the others. */
-static PetscErrorCode SystemAssemble(Rigid rigid, const RigidRow *row, PetscReal h)
+PetscErrorCode RigidSystemAssemble(Rigid rigid, const RigidRow *row, PetscReal h)
 {
   RigidSystem s = rigid->system;
 
@@ -192,7 +158,7 @@ static PetscErrorCode SystemAssemble(Rigid rigid, const RigidRow *row, PetscReal
     for (int e = 0; e < 2; e++) {
       const PetscReal *J = e ? row[r].Jb : row[r].Ja;
       PetscReal *W = s->W + 12 * r + 6 * e;
-      const PetscInt i = RowEnd(rigid, r, e);
+      const PetscInt i = RigidRowEnd(rigid, r, e);
       for (int k = 0; k < 6; k++) W[k] = 0.;
       if (i != RIGID_GROUND) RigidBodyMobility(&rigid->body[i], J, W);
       for (int k = 0; k < 6; k++) diag += J[k] * W[k];
@@ -205,7 +171,7 @@ static PetscErrorCode SystemAssemble(Rigid rigid, const RigidRow *row, PetscReal
     PetscInt n = 0;
     PetscReal diag = 0.;
     for (int e = 0; e < 2; e++) {
-      const PetscInt i = RowEnd(rigid, r, e);
+      const PetscInt i = RigidRowEnd(rigid, r, e);
       const PetscReal *J = e ? row[r].Jb : row[r].Ja;
       for (PetscInt p = i == RIGID_GROUND ? 0 : s->start[i]; i != RIGID_GROUND && p < s->start[i + 1]; p++) {
         const PetscReal *W = s->W + 6 * s->entry[p];
@@ -253,14 +219,14 @@ static PetscErrorCode SystemSolve(Rigid rigid, PetscReal factor, PetscReal y[])
 }
 
 /* wrench = D^T y, over the rows of one kind: hard (1), soft (0), both (-1). */
-static void SystemWrench(Rigid rigid, const RigidRow *row, const PetscReal y[], int kind)
+void RigidSystemWrench(Rigid rigid, const RigidRow *row, const PetscReal y[], int kind)
 {
   RigidSystem s = rigid->system;
   for (PetscInt i = 0; i < 6 * rigid->n; i++) s->wrench[i] = 0.;
   for (PetscInt r = 0; r < s->n; r++) {
     if (kind >= 0 && (int)rigid->joint[s->joint[r]].hard[s->local[r]] != kind) continue;
     for (int e = 0; e < 2; e++) {
-      const PetscInt i = RowEnd(rigid, r, e);
+      const PetscInt i = RigidRowEnd(rigid, r, e);
       if (i == RIGID_GROUND) continue;
       for (int k = 0; k < 6; k++) s->wrench[6 * i + k] += y[r] * (e ? row[r].Jb[k] : row[r].Ja[k]);
     }
@@ -268,7 +234,7 @@ static void SystemWrench(Rigid rigid, const RigidRow *row, const PetscReal y[], 
 }
 
 /* Kick all free bodies of the system by the wrench. */
-static void SystemKick(Rigid rigid, PetscReal h)
+void RigidSystemKick(Rigid rigid, PetscReal h)
 {
   RigidSystem s = rigid->system;
   for (PetscInt i = 0; i < rigid->n; i++) {
@@ -295,7 +261,7 @@ static PetscReal RowVelocity(Rigid rigid, const RigidRow *row, PetscInt r, Petsc
 {
   PetscReal v = 0.;
   for (int e = 0; e < 2; e++) {
-    const PetscInt i = RowEnd(rigid, r, e);
+    const PetscInt i = RigidRowEnd(rigid, r, e);
     const PetscReal *J = e ? row->Jb : row->Ja;
     PetscReal w[3];
     if (i == RIGID_GROUND || (driven && rigid->body[i].spec.motion == RIGID_FREE)) continue;
@@ -334,15 +300,15 @@ static PetscErrorCode ProjectVelocity(Rigid rigid, const RigidRow *row)
 
   PetscFunctionBegin;
   ActivateRows(rigid, PETSC_FALSE);
-  PetscCall(SystemAssemble(rigid, row, 0.));
+  PetscCall(RigidSystemAssemble(rigid, row, 0.));
   for (int it = 0; it < 3; it++) {
     for (PetscInt r = 0; r < s->n; r++) {
       s->res[r] = s->active[r] ? RowVelocity(rigid, &row[r], r, PETSC_FALSE) : 0.;
       s->lambda[r] = 0.;
     }
     PetscCall(SystemSolve(rigid, -1., s->lambda));
-    SystemWrench(rigid, row, s->lambda, 1);
-    SystemKick(rigid, 1.);
+    RigidSystemWrench(rigid, row, s->lambda, 1);
+    RigidSystemKick(rigid, 1.);
     AuditRows(rigid, row, 1, 1.);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -352,7 +318,7 @@ static PetscErrorCode ProjectVelocity(Rigid rigid, const RigidRow *row)
 PetscErrorCode RigidSystemProjectVelocity(Rigid rigid)
 {
   PetscFunctionBegin;
-  SystemRows(rigid, rigid->system->row0);
+  RigidSystemRows(rigid, rigid->system->row0);
   PetscCall(ProjectVelocity(rigid, rigid->system->row0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -371,67 +337,6 @@ static PetscErrorCode CheckAssembled(Rigid rigid)
                s->joint[r], RigidJointName(j->spec.type), j->spec.a, j->spec.b, (double)rigid->t,
                (double)PetscAbsReal(s->row0[r].g));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Stage 1 with the multipliers as they are: free bodies from their saved state over h; then the residuals, worst one relative to
- * its tolerance. */
-static PetscErrorCode Trial(Rigid rigid, PetscReal h, PetscReal *worst, PetscInt *where)
-{
-  RigidSystem s = rigid->system;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < rigid->n; i++)
-    if (s->start[i + 1] > s->start[i] && rigid->body[i].spec.motion == RIGID_FREE) {
-      rigid->body[i] = s->saved[i];
-      RigidBodyKickApplied(rigid, &rigid->body[i], .5 * h);
-    }
-  SystemWrench(rigid, s->row0, s->lambda, -1);
-  SystemKick(rigid, .5 * h);
-  for (PetscInt i = 0; i < rigid->n; i++)
-    if (s->start[i + 1] > s->start[i] && rigid->body[i].spec.motion == RIGID_FREE) PetscCall(RigidBodyDrift(rigid, i, h));
-  SystemRows(rigid, s->row1);
-  *worst = 0.;
-  *where = 0;
-  for (PetscInt r = 0; r < s->n; r++) {
-    const RigidJoint *j = &rigid->joint[s->joint[r]];
-    const PetscReal k = j->k[s->local[r]], c = j->c[s->local[r]], g0 = s->row0[r].g, g1 = s->row1[r].g, stiff = .5 * k + c / h;
-    s->res[r] =
-        !s->active[r] ? 0. : (j->hard[s->local[r]] ? g1 : (s->lambda[r] + .5 * k * (g0 + g1) + c * (g1 - g0) / h) / stiff);
-    PetscCheck(!PetscIsInfOrNanReal(s->res[r]), rigid->comm, PETSC_ERR_FP,
-               "Rigid joint %" PetscInt_FMT " (%s): not finite at t = %g s", s->joint[r], RigidJointName(j->spec.type),
-               (double)rigid->t);
-    if (PetscAbsReal(s->res[r]) > *worst * TOLERANCE * s->length[r]) {
-      *worst = PetscAbsReal(s->res[r]) / (TOLERANCE * s->length[r]);
-      *where = r;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newton iterations of stage 1 for the present set of active rows. */
-static PetscErrorCode SolvePositions(Rigid rigid, PetscReal h)
-{
-  RigidSystem s = rigid->system;
-  PetscReal worst = 0., last = PETSC_MAX_REAL;
-  PetscInt where = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < rigid->n; i++)
-    if (s->start[i + 1] > s->start[i] && rigid->body[i].spec.motion == RIGID_FREE) rigid->body[i] = s->saved[i];
-  PetscCall(SystemAssemble(rigid, s->row0, h));
-  for (int it = 0; it < MAX_ITERATIONS; it++) {
-    PetscCall(Trial(rigid, h, &worst, &where));
-    if (worst <= 1. || (it > 2 && worst > .5 * last && worst < 1.e3)) PetscFunctionReturn(PETSC_SUCCESS); /* met, or round-off */
-    last = worst;
-    PetscCall(SystemSolve(rigid, -2. / (h * h), s->lambda));
-  }
-  PetscCheck(worst < 1.e4, rigid->comm, PETSC_ERR_NOT_CONVERGED,
-             "Rigid joint %" PetscInt_FMT " (%s of bodies %" PetscInt_FMT " and %" PetscInt_FMT
-             "): cannot be kept at t = %g s, ends apart by %g; the step of %g s is too long or the "
-             "joints contradict one another",
-             s->joint[where], RigidJointName(rigid->joint[s->joint[where]].spec.type), rigid->joint[s->joint[where]].spec.a,
-             rigid->joint[s->joint[where]].spec.b, (double)rigid->t, (double)PetscAbsReal(s->res[where]), (double)h);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -501,7 +406,7 @@ PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
   PetscBool again = PETSC_TRUE;
 
   PetscFunctionBegin;
-  SystemRows(rigid, s->row0);
+  RigidSystemRows(rigid, s->row0);
   SystemLengths(rigid);
   PetscCall(CheckAssembled(rigid));
   for (PetscInt r = 0; r < s->n; r++) s->drive[r] = RowVelocity(rigid, &s->row0[r], r, PETSC_TRUE);
@@ -515,7 +420,7 @@ PetscErrorCode RigidSystemBegin(Rigid rigid, PetscReal h)
   ActivateRows(rigid, PETSC_TRUE);
   for (PetscInt r = 0; r < s->n; r++) s->lambda[r] = 0.;
   while (again) {
-    PetscCall(SolvePositions(rigid, h));
+    PetscCall(RigidPositionSolve(rigid, h));
     YieldRows(rigid, &again);
   }
   FinishJoints(rigid, h);
@@ -528,7 +433,7 @@ PetscErrorCode RigidSystemEnd(Rigid rigid, PetscReal h)
   RigidSystem s = rigid->system;
 
   PetscFunctionBegin;
-  SystemWrench(rigid, s->row0, s->lambda, -1); /* goes into the accelerations */
+  RigidSystemWrench(rigid, s->row0, s->lambda, -1); /* goes into the accelerations */
   AuditTurn(rigid, s->saved, .5 * h);
   for (PetscInt r = 0; r < s->n; r++) rigid->ledger.driven -= .5 * h * s->lambda[r] * s->drive[r];
   for (PetscInt i = 0; i < rigid->n; i++) {
@@ -540,8 +445,8 @@ PetscErrorCode RigidSystemEnd(Rigid rigid, PetscReal h)
       b->Tused[k] += s->wrench[6 * i + 3 + k];
     }
   }
-  SystemWrench(rigid, s->row1, s->lambda, 0);
-  SystemKick(rigid, .5 * h);
+  RigidSystemWrench(rigid, s->row1, s->lambda, 0);
+  RigidSystemKick(rigid, .5 * h);
   AuditRows(rigid, s->row1, 0, .5 * h);
   PetscCall(ProjectVelocity(rigid, s->row1));
   PetscFunctionReturn(PETSC_SUCCESS);
