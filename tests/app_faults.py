@@ -211,6 +211,17 @@ def not_a_number():
     print("NaN in each of %s: origin named, restart has the bits of a run without" % ", ".join(names), flush=True)
 
 
+def too_fast():
+    """A fluid as fast as sound, here as a share of it that falling for 2 ms or more reaches, ends in one line; the checkpoint goes on when told."""
+    code, out, err = finish(start([*RUN, "-output_dir", "fast", "-sph_speed_stop", "0.025"]))
+    one_line(code, out, err, [r"speed 0\.25\d* m/s at step [1-7]\d,", "of the speed of sound 10", "sph_speed_stop = 0.025"], "too fast", 2)
+    good = base.checkpoints("fast")
+    check(len(good) == 1 and "-restart " + os.path.relpath(good[-1], frond.folder) in out, "too fast: the checkpoint: %s" % out[-300:])
+    frond.runs(*RUN, "-output_dir", "fast", "-restart", "fast", "-sph_speed_stop", "0")
+    base.same_run("limit_whole", "fast", "too fast, and restart without the stop")
+    print("a fluid too fast: one line, restart without the stop has the bits of a run without", flush=True)
+
+
 def determinism():
     """Fluid, beams and bodies: the same bits on repeat and for any number of threads."""
     for k, (threads, extra) in enumerate((("1", []), ("1", []), ("2", []), ("3", []), ("7", []))):
@@ -232,6 +243,7 @@ if __name__ == "__main__":
         full_disk()
         folder_goes()
         not_a_number()
+        too_fast()
         no_memory()
         lives("signals", [signal.SIGTERM, signal.SIGINT], 6, 1200)
         lives("kills", [signal.SIGKILL], 10, 1500)

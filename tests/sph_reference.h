@@ -264,7 +264,7 @@ static void CheckRates(const Ref *r, const char *scene)
 }
 
 typedef struct {
-  Sum w, wr, x[3], p, v[3], xsph[3];
+  Sum w, wr, x[3], p, v[3], xsph[3], share; /* share: what XSPH takes from the marker's own velocity */
   double g[3];
 } AuxSums;
 
@@ -294,6 +294,7 @@ static void XsphTerm(const Ref *r, PetscInt a, PetscInt b, const Pair *x, void *
   const double c = r->p->zeta * r->t->m[b] * 2.0 / (Rho(r, a) + Rho(r, b)) * r->p->wnorm;
   const double w = W(r->p->kernel, x->q, &mag), dw = Change(W, r->p->kernel, x->q, x->dq);
 
+  Add(&s->share, c * w, c * mag, c * dw);
   for (int k = 0; k < 3; k++) {
     const double va = r->t->v[k][a], vb = r->t->v[k][b], m = fabs(va) + fabs(vb);
     Add(&s->xsph[k], c * w * (vb - va), c * mag * m, c * dw * m);
@@ -315,8 +316,11 @@ static void CheckAuxiliary(const Ref *r, const Snapshot *out, const char *scene)
     if (t->group[i] == -1) {
       ForNeighbours(r, i, 0, XsphTerm, &s);
       for (int k = 0; k < p->dim; k++) {
-        err[k] = fabs(out->dv[k][i] - s.xsph[k].v);
-        bound[k] = Bound(&s.xsph[k], r->u);
+        /* of its own velocity a marker keeps at least half of the part 1 - zeta that it keeps in an undisturbed fluid */
+        const double most = 1.0 - 0.5 * (1.0 - p->zeta), over = s.share.v > most ? most / s.share.v : 1.0;
+        err[k] = fabs(out->dv[k][i] - over * s.xsph[k].v);
+        bound[k] = over * Bound(&s.xsph[k], r->u);
+        if (s.share.v > most) bound[k] += over * fabs(s.xsph[k].v) * (Bound(&s.share, r->u) / s.share.v + 4.0 * r->u);
       }
     } else if (p->wall == SPH_WALL_ADAMI) {
       for (int k = 0; k < p->dim; k++) s.g[k] = p->f[k] - t->ab[k][i];

@@ -46,6 +46,7 @@ typedef struct {
   double wp, wv[3],
       wsum; /* boundary: extrapolated pressure and mean fluid velocity, kernel sum x volume of a cell of the lattice */
   double A, Ads, Adv, Asum, Awp, Awv; /* amplitudes */
+  double share, Ashare;               /* zeta times the sum of the weights of Eq. 11, and its amplitude */
   int n;                              /* terms */
 } BruteSums;
 
@@ -131,6 +132,17 @@ static void BruteAux(const Brute *b, int i, int j, const double d[3], double r, 
   }
   for (int k = 0; k < p->dim; k++) o->dv[k] += p->zeta * b->m[j] / (0.5 * (ri + rj)) * (b->v[3 * j + k] - b->v[3 * i + k]) * W;
   o->Adv += p->zeta * b->m[j] / (0.5 * (ri + rj)) * (BruteNorm3(b->v + 3 * j) + BruteNorm3(b->v + 3 * i)) * C;
+  o->share += p->zeta * b->m[j] / (0.5 * (ri + rj)) * W;
+  o->Ashare += p->zeta * b->m[j] / (0.5 * (ri + rj)) * C;
+}
+
+/* Eq. 11 where markers crowd: they keep half of 1 - zeta of their own velocity. The amplitude takes the error of the quotient. */
+static void BruteCrowd(const SphParams *p, BruteSums *o)
+{
+  const double most = (1.0 + p->zeta) / 2.0;
+  if (o->share <= most) return;
+  for (int k = 0; k < 3; k++) o->dv[k] *= most / o->share;
+  o->Adv *= most / o->share * (1.0 + o->Ashare / o->share);
 }
 
 /* Eqs. 4-6, Morris et al. (1997) Eq. 22, Monaghan (1992) Eq. 4.2, Molteni and Colagrossi (2009), Fourtakas et al. (2019). */

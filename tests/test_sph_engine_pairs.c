@@ -30,6 +30,7 @@ static const Case cases[] = {
     {"3D bench: bce, artificial, diffusion", 3, 1, {0, 0, 0}, {2.4, 2.2, 1.9}, 1.7320508, SPH_WALL_BCE, 1, 0.0, 2, 1, 0},
     {"3D bench: cubic, Fourtakas, XSPH", 3, 0, {0, 0, 0}, {2.4, 2.2, 1.9}, 1.7320508, SPH_WALL_BCE, 1, 0.5, 2, 2, 0},
     {"3D Morris, diffusion, adami", 3, 0, {0, 1, 0}, {2.4, 2.2, 1.9}, 1.4, SPH_WALL_ADAMI, 1, 0.5, 1, 1, 0},
+    {"3D Wendland, XSPH in full", 3, 1, {0, 0, 0}, {2.4, 2.2, 1.9}, 1.4, SPH_WALL_ADAMI, 1, 1.0, 0, 0, 0},
     {"2D open, adami", 2, 0, {0, 0, 0}, {6.3, 5.2, 0}, 1.2, SPH_WALL_ADAMI, 1, 0.5, 0, 0, 0},
     {"2D periodic 2 cells, bce, Wendland", 2, 1, {1, 0, 0}, {2.4, 5.2, 0}, 1.3, SPH_WALL_BCE, 1, 0.5, 1, 2, 0},
     {"3D closed box with XSPH, double", 3, 0, {1, 1, 1}, {1.4, 2.3, 3.2}, 1.2, SPH_WALL_BCE, 0, 0.5, 0, 0, 1},
@@ -246,7 +247,10 @@ static PetscErrorCode RunCase(const Case *c)
   PetscCall(PetscCalloc2(k.n, &aux, k.n, &before));
   PetscCall((*sph->ops->rates)(sph));
   PetscCall((*sph->ops->pull)(sph));
-  for (int id = 0; id < k.n; id++) BruteLoop(&b, id, BruteAux, &aux[id]);
+  for (int id = 0; id < k.n; id++) {
+    BruteLoop(&b, id, BruteAux, &aux[id]);
+    if (!b.boundary[id]) BruteCrowd(&sph->par, &aux[id]);
+  }
   CheckAux(sph, &k, &b, aux, eps, worst);
   SecondSweepValues(&sph->par, sph, &k, &b, aux);
   for (int id = 0; id < k.n; id++) {

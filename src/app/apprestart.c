@@ -10,9 +10,10 @@
 /* Options that do not change what is computed, or that a run may go on with differently; also all that begin with the stems. */
 static PetscBool is_free(const char name[])
 {
-  static const char *const names[] = {"restart",       "restart_changed",  "checkpoint_every", "checkpoint_keep", "output_dir",
-                                      "output_fields", "output_overwrite", "progress_every",   "time_end",        "error_trace",
-                                      "fault_nan",     "sph_type",         "sph_cuda_timing",  "scene_name"};
+  static const char *const names[] = {"restart",         "restart_changed", "checkpoint_every", "checkpoint_keep",
+                                      "output_dir",      "output_fields",   "output_overwrite", "progress_every",
+                                      "time_end",        "error_trace",     "fault_nan",        "sph_type",
+                                      "sph_cuda_timing", "scene_name",      "sph_speed_stop"};
   static const char *const stems[] = {"log_",    "malloc",  "info",    "options_", "on_error_",
                                       "memory_", "viewer_", "fp_trap", "check_",   "debug"};
 

@@ -58,6 +58,7 @@ PetscErrorCode SphCreate(MPI_Comm comm, Sph *newsph)
   sph->par.delta = 0.1;
   sph->par.shiftfactor = 2.0;
   sph->par.cfl = 0.25;
+  sph->par.speedstop = 1.0;
   sph->par.dtfixed = PETSC_DECIDE;
   sph->par.reinit = SPH_REINIT_SHEPARD;
   sph->par.reinitevery = 10;
@@ -243,12 +244,17 @@ static PetscErrorCode FixedTimeStep(Sph sph, PetscReal limit, const char *which)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Speeds near c_s compress the fluid: by about 4 % at c_s/5. Warned at the first time and at each doubling. */
-static PetscErrorCode WarnSpeed(Sph sph, PetscReal vmax)
+/* Speeds near c_s compress the fluid: by about 4 % at c_s/5. Warned at the first time and at each doubling; the end at c_s. */
+static PetscErrorCode CheckSpeed(Sph sph, PetscReal vmax)
 {
-  const PetscReal cs = sph->par.cs;
+  const PetscReal cs = sph->par.cs, stop = sph->par.speedstop;
 
   PetscFunctionBegin;
+  PetscCheck(!(stop > 0.0 && vmax > stop * cs), sph->comm, PETSC_ERR_CONV_FAILED,
+             "speed %g m/s at step %" PetscInt_FMT
+             ", time %g s, is %.3g of the speed of sound %g m/s: the run is unstable, or sph_sound_speed too low "
+             "(sph_speed_stop = %g ends it here; 0 goes on)",
+             (double)vmax, sph->step, (double)sph->t, (double)(vmax / cs), (double)cs, (double)stop);
   if (vmax <= PetscMax(0.2 * cs, 2.0 * sph->speedwarned)) PetscFunctionReturn(PETSC_SUCCESS);
   sph->speedwarned = vmax;
   PetscCall(PetscFPrintf(sph->comm, PETSC_STDERR,
@@ -264,7 +270,8 @@ static PetscErrorCode WarnSpeed(Sph sph, PetscReal vmax)
 
   dt = cfl min(h/(c_s + v_max), sqrt(h/a_max), h^2/(2 nu)), s. Source: Morris, Fox, Zhu, J. Comput. Phys. 136 (1997), Eqs. 19-21.
 The artificial viscosity counts as nu = alpha c_s h/(2 (dim + 2)): Monaghan, Rep. Prog. Phys. 68 (2005), Sect. 7. Errors: a fixed
-step above the limit at the first step; later it is a warning, once.
+step above the limit at the first step; later it is a warning, once. A speed beyond SphSetSpeedStop(), a step below
+SphSetMinTimeStep().
 @*/
 PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
 {
@@ -289,7 +296,7 @@ PetscErrorCode SphComputeTimeStep(Sph sph, PetscReal *dt)
   PetscCheck(PetscIsNormalReal(limit), sph->comm, PETSC_ERR_FP,
              "non-finite velocity or acceleration at step %" PetscInt_FMT ", time %g s: the stable step is %g s", sph->step,
              (double)sph->t, (double)limit);
-  PetscCall(WarnSpeed(sph, vmax));
+  PetscCall(CheckSpeed(sph, vmax));
   PetscCheck(limit >= p->dtmin, sph->comm, PETSC_ERR_CONV_FAILED,
              "the stable step %g s (%s limit) at step %" PetscInt_FMT ", time %g s, is below sph_dt_min = %g s", (double)limit,
              which, sph->step, (double)sph->t, (double)p->dtmin);

@@ -114,7 +114,11 @@ FROND_EXTERN PetscErrorCode SphSetSoundSpeed(Sph sph, PetscReal cs);
 FROND_EXTERN PetscErrorCode SphSetGamma(Sph sph, PetscReal gamma);
 /* Constant added to the pressure of the equation of state, before SphSetUp(). pb: Pa, >= 0, default 0. */
 FROND_EXTERN PetscErrorCode SphSetBackgroundPressure(Sph sph, PetscReal pb);
-/* Factor of the XSPH velocity, before SphSetUp(). zeta: (-), 0 (no XSPH) to 1, default 0.5. Source: the paper, Eq. 11. */
+/*
+  Factor of the XSPH velocity, before SphSetUp(). zeta: (-), 0 (no XSPH) to 1, default 0.5. Source: the paper, Eq. 11. It is
+  reduced where markers crowd so much (the sum w of V W above (1 + zeta)/(2 zeta)) that they would all but stop or move against
+  their velocity.
+*/
 FROND_EXTERN PetscErrorCode SphSetXSPH(Sph sph, PetscReal zeta);
 /*
   Re-initialisation of the density, before SphSetUp(). type: form of the sum, default Shepard. every: its period in steps, >=
@@ -196,6 +200,11 @@ FROND_EXTERN PetscErrorCode SphSetTimeStep(Sph sph, PetscReal dt);
 FROND_EXTERN PetscErrorCode SphSetCFL(Sph sph, PetscReal cfl);
 /* Floor of the stable step: below it the run ends with PETSC_ERR_CONV_FAILED. dtmin: s, >= 0; 0 (default) for none. */
 FROND_EXTERN PetscErrorCode SphSetMinTimeStep(Sph sph, PetscReal dtmin);
+/*
+  Speed of a marker over the speed of sound above which the run ends with PETSC_ERR_CONV_FAILED: it has become unstable, or the
+  speed of sound is too low. ratio: (-), >= 0, default 1; 0 for none.
+*/
+FROND_EXTERN PetscErrorCode SphSetSpeedStop(Sph sph, PetscReal ratio);
 /* Period of the search for values that are not finite. every: steps, >= 1, default 10. */
 FROND_EXTERN PetscErrorCode SphSetCheckEvery(Sph sph, PetscInt every);
 /* Read -sph_... (with the prefix) into the setters above; `frond help` and README list them. */

@@ -171,22 +171,24 @@ SPH_INLINE void AuxFluid(const int kernel, const Sweep *w, const List *l, int i)
   const sphreal xi = w->q[0][i], yi = w->q[1][i], zi = w->q[2][i], vx = w->q[SPH_Q_V][i], vy = w->q[SPH_Q_V + 1][i],
                 vz = w->q[SPH_Q_V + 2][i];
   const sphreal rho = c.rho0 + c.rho0 * w->q[SPH_Q_S][i];
-  sphreal sx = 0, sy = 0, sz = 0;
+  sphreal sw = 0, sx = 0, sy = 0, sz = 0;
   if (SphIsZone(w->sph->group[i])) { /* moves as its opening says */
     for (int k = 0; k < 3; k++) SPH_VALUES(w->sph->rate.dv[k])[i] = 0;
     return;
   }
-#pragma omp simd reduction(+ : sx, sy, sz)
+#pragma omp simd reduction(+ : sw, sx, sy, sz)
   for (int j = 0; j < l->n; j++) {
     const sphreal dx = xi - X[j], dy = yi - Y[j], dz = zi - Z[j], rhoj = c.rho0 + c.rho0 * S[j];
     const sphreal f = sph_xsph(VOL[j] * rhoj, rho, rhoj, c.wnorm * sph_w(kernel, SPH_SQRT(dx * dx + dy * dy + dz * dz) * c.hinv));
+    sw += f;
     sx += f * (VX[j] - vx);
     sy += f * (VY[j] - vy);
     sz += f * (VZ[j] - vz);
   }
-  SPH_VALUES(w->sph->rate.dv[0])[i] = c.zeta * sx;
-  SPH_VALUES(w->sph->rate.dv[1])[i] = c.zeta * sy;
-  SPH_VALUES(w->sph->rate.dv[2])[i] = c.zeta * sz;
+  const sphreal zeta = sph_xsph_factor(c.zeta, sw);
+  SPH_VALUES(w->sph->rate.dv[0])[i] = zeta * sx;
+  SPH_VALUES(w->sph->rate.dv[1])[i] = zeta * sy;
+  SPH_VALUES(w->sph->rate.dv[2])[i] = zeta * sz;
 }
 
 /* Shifting velocity of a fluid marker, at most V_max/2, added to that of Eq. 11. */

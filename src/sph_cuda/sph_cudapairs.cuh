@@ -112,19 +112,21 @@ static __device__ __forceinline__ void AuxFluid(const SphCudaArrays &d, const Sp
 {
   const Real4 x = q.xm[i], a = q.us[i];
   const sphreal rhoa = Density(c, a.w);
-  sphreal sx = 0, sy = 0, sz = 0;
+  sphreal sw = 0, sx = 0, sy = 0, sz = 0;
   auto term = [&](int j, bool, sphreal, sphreal, sphreal, sphreal r2, sphreal mb) {
     const Real4 b = q.us[j];
     const sphreal w = sph_xsph(mb, rhoa, Density(c, b.w), c.wnorm * sph_w(KERNEL, Sqrt(r2) * c.hinv));
+    sw += w;
     sx += w * (b.x - a.x);
     sy += w * (b.y - a.y);
     sz += w * (b.z - a.z);
   };
 
   ForNeighbours(g, c.r2max, d.cellstart, q.xm, key, x, term);
-  d.rate.dv[0][i] = (double)(c.zeta * sx);
-  d.rate.dv[1][i] = (double)(c.zeta * sy);
-  d.rate.dv[2][i] = (double)(c.zeta * sz);
+  const sphreal zeta = sph_xsph_factor(c.zeta, sw);
+  d.rate.dv[0][i] = (double)(zeta * sx);
+  d.rate.dv[1][i] = (double)(zeta * sy);
+  d.rate.dv[2][i] = (double)(zeta * sz);
 }
 
 /* Sums over the fluid around a boundary marker: weights, weights times rho, pressure, velocity, rho x_ab. */

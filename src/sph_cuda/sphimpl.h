@@ -35,8 +35,9 @@ typedef struct {
   PetscBool periodic[3];
   PetscReal dtfixed; /* s, or PETSC_DECIDE */
   PetscReal cfl;
-  PetscReal dtmin; /* s; 0 for none */
-  int slip;        /* SphSlipType */
+  PetscReal dtmin;     /* s; 0 for none */
+  PetscReal speedstop; /* speed over c_s at which a run ends, -; 0 for none */
+  int slip;            /* SphSlipType */
   PetscInt reinitevery, checkevery;
   int kernel; /* SphKernelType */
   int precision, wall, reinit;

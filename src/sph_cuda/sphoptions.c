@@ -339,6 +339,15 @@ PetscErrorCode SphSetMinTimeStep(Sph sph, PetscReal dtmin)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SphSetSpeedStop(Sph sph, PetscReal ratio)
+{
+  PetscFunctionBegin;
+  PetscCheck(ratio >= 0.0 && !PetscIsInfOrNanReal(ratio), sph->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "sph_speed_stop = %g: must be >= 0 (-)", (double)ratio);
+  sph->par.speedstop = ratio;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SphSetCheckEvery(Sph sph, PetscInt every)
 {
   PetscFunctionBegin;
@@ -472,6 +481,9 @@ static PetscErrorCode OptionsForms(Sph sph, SphOptionItems PetscOptionsObject)
   PetscCall(PetscOptionsReal("-sph_dt_min", "Floor of the time step, below which the run ends (s); 0 for none",
                              "SphSetMinTimeStep", p->dtmin, &r, &set));
   if (set) PetscCall(SphSetMinTimeStep(sph, r));
+  PetscCall(PetscOptionsReal("-sph_speed_stop", "Speed over that of sound, above which the run ends (-); 0 for none",
+                             "SphSetSpeedStop", p->speedstop, &r, &set));
+  if (set) PetscCall(SphSetSpeedStop(sph, r));
   PetscCall(PetscOptionsEnum("-sph_integrator", "Time integration of the fluid", "SphSetIntegrator", SphIntegratorTypes,
                              (PetscEnum)p->integrator, &e, &set));
   if (set) PetscCall(SphSetIntegrator(sph, (SphIntegratorType)e));
@@ -514,9 +526,9 @@ PetscErrorCode SphView(Sph sph, PetscViewer viewer)
                                    "sph_density_diffusion_delta %g, sph_integrator %s\n",
                                    SphViscosityTypes[p->viscosity], (double)p->alpha, SphDiffusionTypes[p->diffusion],
                                    (double)p->delta, SphIntegratorTypes[p->integrator]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_shifting %s, sph_shifting_factor %g, sph_slip %s, sph_dt_min %g s\n",
-                                   SphShiftingTypes[p->shifting], (double)p->shiftfactor, SphSlipTypes[p->slip],
-                                   (double)p->dtmin));
+  PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  sph_shifting %s, sph_shifting_factor %g, sph_slip %s, sph_dt_min %g s, sph_speed_stop %g\n",
+      SphShiftingTypes[p->shifting], (double)p->shiftfactor, SphSlipTypes[p->slip], (double)p->dtmin, (double)p->speedstop));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_gradient_correction %s\n", SphGradientTypes[p->gradient]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  sph_body_force (%g, %g, %g) m/s^2, sph_cfl %g, sph_check_every %" PetscInt_FMT "\n",
                                    (double)p->f[0], (double)p->f[1], (double)p->f[2], (double)p->cfl, p->checkevery));

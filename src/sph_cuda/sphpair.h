@@ -89,10 +89,22 @@ SPH_INLINE sphreal sph_diffusion(const SphPairConst *c, sphreal Vb, sphreal sa, 
   return c->ddt * Vb * (sa - sb - gx) * F;
 }
 
-/* Eq. 11: factor of (v_b - v_a) in the XSPH velocity (-), without zeta. */
+/* Eq. 11: factor of (v_b - v_a) in the XSPH velocity (-), without zeta: sph_xsph_factor(). */
 SPH_INLINE sphreal sph_xsph(sphreal mb, sphreal rhoa, sphreal rhob, sphreal W)
 {
   return (sphreal)2 * mb / (rhoa + rhob) * W;
+}
+
+/*
+  Factor of the sum of Eq. 11 (-): zeta, less where markers crowd; w: the sum of sph_xsph() over all markers, the marker itself
+  too, 1 in an undisturbed fluid. Eq. 11 leaves markers that crowd the part 1 - zeta w of the velocity that they have relative to
+  one another. When w > 1/zeta that is negative: they move against their velocity, so that what pulls them together drives them
+  apart and back without end. The part is kept at (1 - zeta)/2 at least, half of what it is in an undisturbed fluid.
+*/
+SPH_INLINE sphreal sph_xsph_factor(sphreal zeta, sphreal w)
+{
+  const sphreal most = (sphreal)0.5 * ((sphreal)1 + zeta);
+  return zeta * w > most ? most / w : zeta;
 }
 
 /*
